@@ -468,23 +468,24 @@ class Commands:
         self.__init__(self._device)  # type: ignore[misc]
 
     def read(self, *wanted: tuple[Piece, int]) -> list[NDArray[np.uint8]]:
-        """Hand it all to the device, wait, and read the first bytes of some buffers."""
+        """Hand it all to the device, wait once, and read the first bytes of some buffers."""
         self._end_pass()
         use = _library().BufferUsage
-        copies = []
-        for piece, n_bytes in wanted:
-            size = rounded_up(max(n_bytes, 1), MAPPED_STEP) * MAPPED_STEP
-            copy = self._device.raw.create_buffer(size=size, usage=use.COPY_DST | use.MAP_READ)
-            self._encoder.copy_buffer_to_buffer(piece.raw, 0, copy, 0, size)
-            copies.append(copy)
+        sizes = [rounded_up(max(n_bytes, 1), MAPPED_STEP) * MAPPED_STEP for _, n_bytes in wanted]
+        if len(wanted) > 1 and sum(sizes) > self._device.most_bytes:
+            return [self.read(each)[0] for each in wanted]
+        copy = self._device.raw.create_buffer(size=sum(sizes), usage=use.COPY_DST | use.MAP_READ)
+        start = 0
+        for (piece, _), size in zip(wanted, sizes, strict=True):
+            self._encoder.copy_buffer_to_buffer(piece.raw, 0, copy, start, size)
+            start += size
         self.submit()
-        found = []
-        for copy, (_, n_bytes) in zip(copies, wanted, strict=True):
-            copy.map_sync("READ")
-            found.append(np.frombuffer(copy.read_mapped(), np.uint8, n_bytes))
-            copy.unmap()
-            copy.destroy()
-        return found
+        copy.map_sync("READ")
+        raw = np.frombuffer(copy.read_mapped(), np.uint8)
+        copy.unmap()
+        copy.destroy()
+        starts = np.cumsum([0, *sizes])
+        return [raw[start : start + n_bytes] for start, (_, n_bytes) in zip(starts, wanted, strict=False)]
 
 
 def uniform(*values: int | float) -> bytes:

@@ -51,6 +51,8 @@ PLACES: dict[str, slice] = {
 }
 """Of what is learned, among the numbers of a splat."""
 GLASS = 15
+RATED = ("means", "quats", "scales", "opacities", "colours", "reflectivity", "f0")
+"""Groups of the optimiser that splats are in."""
 
 GLASS_FEATURES, OTHER_FEATURES = 3, 2
 """Quads of channels: (1 - R) c, R, R F0 and the normal; or c and the normal."""
@@ -238,6 +240,33 @@ class CardSplats:
                 part.seen,
             )  # fmt: skip
         commands.submit()
+
+    def try_step(self, view: View, settings: RasterSettings, pull: Floats, by: AdamStep) -> None:
+        """A step whose picture has given gradients, to its end, for who wants to know what it takes.
+
+        Parameters
+        ----------
+        pull
+            Gradients by pixel: of `n_quads` quads of channels, and one of alpha and depth.
+        """
+        with self.device.errors_said():
+            drawing, features = self.drawing(view, settings, 3)
+            commands, weights = self.device.commands(), self.device.buffer(4 * self.n)
+            commands.clear(weights, 4 * self.n)
+            totals = drawing.no_sums(commands, self.parts)
+            for window in drawing.windows:
+                drawing.blend(commands, window, features, self.n_quads, weights)
+                rows, columns = window.bins.pixels(view)
+                part = np.ascontiguousarray(pull[rows, columns]).reshape(-1, 4)
+                pixels = self.device.table(len(part))
+                self.device.write_table(pixels, part)
+                drawing.blend_back(commands, window, features, self.n_quads, pixels, self.parts, totals)
+            gradients = [
+                drawing.project_back(commands, part, piece) for part, piece in zip(self.parts, totals, strict=True)
+            ]
+            commands.submit()
+            self.learn(drawing, 3, totals, gradients, weights, by)
+            self.device.read((self._parts[0].seen, 16))
 
     def _seen_from(self, view: View, degree: int, part: _Part, seed: int = 0) -> bytes:
         """The struct Learning of learned.wgsl, whose rates are 0."""

@@ -8,6 +8,7 @@ are in whole numbers, so that the same step has the same bits in whatever order 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,13 +18,17 @@ from torch import Tensor
 from torch.optim import Optimizer
 
 from reconstruction.base.out_of_memory import NotFinite
-from reconstruction.gpu.device import Commands, Device, Piece, uniform
+from reconstruction.gpu.device import Commands, Device, Piece, rounded_up, uniform
 from reconstruction.gpu.shaders import Constant
 from reconstruction.gpu.sorting import groups_of
 from reconstruction.light.environment_map import LEVEL
+from reconstruction.light.radiance_grid import RadianceGrid
+from reconstruction.light.radiance_grid_kernels import DENSITY_SCALE, OPAQUE
+from reconstruction.light.ray_table import LEAST_COSINE
+from reconstruction.light.ray_table import SHORTEST as SHORTEST_NORMAL
 from reconstruction.light.shading import DARKEST
 from reconstruction.metrics.image_metrics import C1, C2, WINDOW_PX, window_weights
-from reconstruction.splats.card_splats import AdamStep, CardSplats, fits_card
+from reconstruction.splats.card_splats import GLASS_FEATURES, AdamStep, CardSplats, fits_card
 from reconstruction.splats.densification.strategy import BetweenChanges, Densification, Limits
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.views import View
@@ -77,6 +82,22 @@ PICTURE: dict[str, Constant] = {
     "SHORTEST": SHORTEST,
 }
 
+GRID: dict[str, Constant] = {
+    "BIN": CONSTANTS["BIN"],
+    "TEXELS_A_ROW": CONSTANTS["TEXELS_A_ROW"],
+    "LEAST_REFLECTIVITY": LEAST_REFLECTIVITY,
+    "LEAST_COSINE": LEAST_COSINE,
+    "SHORTEST_NORMAL": float(SHORTEST_NORMAL),
+    "DENSITY_SCALE": float(DENSITY_SCALE),
+    "OPAQUE": float(OPAQUE),
+    "IS_BAD": 0,
+}
+LEARNED_OF_GRID = {"cells", "far"}
+"""Of a radiance grid that kernels know of."""
+CELLS_IN_A_WORD = 4
+OF_CELL, OF_FAR, OF_PANE = 4, 3, 4
+"""Gradients of a vertex, of a pixel of what is far away, and of a pane's tilts and bows."""
+
 
 def fits_card_step(model: SceneModel, config: TrainConfig) -> bool:
     """Whether a card can make all of a step but mirrored light: of harmonics, and of panes whose planes are known."""
@@ -129,13 +150,20 @@ class CardGradients:
 class CardStep:
     """Splats of a model in a card's memory, and steps of their training.
 
+    Parameters
+    ----------
+    marches
+        Whether the card marches mirrored rays through a radiance grid, too; None for where it is no program on the
+        processor, which does that faster by itself.
+
     Raises
     ------
     DeviceFailed
         The card fails, or has too little memory.
     """
 
-    def __init__(self, device: Device, model: SceneModel, optimiser: Optimizer) -> None:
+    def __init__(self, device: Device, model: SceneModel, optimiser: Optimizer, marches: bool | None = None) -> None:
+        self._marches = not device.adapter.is_software if marches is None else marches
         self.device, self._model, self._optimiser = device, model, optimiser
         self.splats = CardSplats(device, model.splats, optimiser, model.light is not None)
         self._between: dict[int, BetweenChanges] = {}
@@ -182,31 +210,46 @@ class CardStep:
                 drawing.blend(commands, window, features, splats.n_quads, of_splats) for window in drawing.windows
             ]
             commands.submit()
-        light = _MirroredLight.of(model, view, generator)
+        light = self._light(view, generator)
         sky = model.sky.picture()
         with self.device.errors_said():
             picture = _CardPicture(self.device, drawing, splats, sample, light, sky, model, gain, weights, progress)
             commands = self.device.commands()
             for window, channels in zip(drawing.windows, blended, strict=True):
+                if light is not None:
+                    light.march(commands, drawing, window, channels, picture.mirrored)
                 picture.light(commands, window, channels)
             picture.compare(commands)
             totals = drawing.no_sums(commands, splats.parts)
             for window, channels in zip(drawing.windows, blended, strict=True):
                 wanted = picture.back(commands, window, channels)
+                if light is not None:
+                    light.march_back(commands, drawing, window, channels, picture.mirrored)
                 drawing.blend_back(commands, window, features, splats.n_quads, wanted, splats.parts, totals)
             of_parameters = [
                 drawing.project_back(commands, part, piece) for part, piece in zip(splats.parts, totals, strict=True)
             ]
             slots = WORDS | SLOTS
             splats.add_up(commands, view, degree, totals, of_parameters, picture.sums, slots, moves=move is not None)
-            sums, of_mirrored = picture.read(commands)
+            raw_sums, *of_light = commands.read(picture.read_sums, *(() if light is None else light.asked(picture)))
+            sums = _Sums.of(raw_sums)
         terms = picture.terms(sums)
         if not np.isfinite(sum(terms.values())):
             raise NotFinite("the loss is not a number")
-        if sums.count("IS_BAD"):
+        of_mirrored = [] if light is None else light.gradients(of_light[0], n_pixels)
+        if sums.count("IS_BAD") or of_mirrored is None:
             raise NotFinite("a gradient is not a number")
-        _give_back(model, gain, move, light, sky, more, sums, of_mirrored, n_pixels)
+        _give_back(model, gain, move, of_mirrored, sky, more, sums, n_pixels)
         return CardGradients(drawing, degree, totals, of_parameters, of_splats, n_pixels), terms
+
+    def _light(self, view: View, generator: torch.Generator | None) -> _MirroredLight | _MarchedLight | None:
+        """What is mirrored in a view: to be marched on the card, or found out here."""
+        model = self._model
+        if model.light is None:
+            return None
+        if self._marches and _MarchedLight.fits(self.device, model):
+            return _MarchedLight(self.device, model, view, generator)
+        return _MirroredLight.of(model, view, generator)
 
     def learn(self, found: CardGradients, rates: Rates, strategy: Densification, limits: Limits, seed: int, *,
               observed: float, jitters: bool) -> None:  # fmt: skip
@@ -251,39 +294,173 @@ class CardStep:
             self.splats.forget_seen()
 
 
+Gradients = list[tuple[Tensor, Tensor]]
+"""Of what has a history, each with what it is of."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _MirroredLight:
-    """Light that panes mirror towards some pixels of a picture.
+    """Light that panes mirror towards some pixels of a picture, found out by the processor.
 
     Parameters
     ----------
+    width_px
+        Of the picture.
     rows, columns
         Of the n pixels.
     light, cosines
         Shapes (n, 3) and (n,), with their history.
     """
 
+    width_px: int
     rows: Tensor
     columns: Tensor
     light: Tensor
     cosines: Tensor
 
     @staticmethod
-    def of(model: SceneModel, view: View, generator: torch.Generator | None) -> _MirroredLight | None:
+    def of(model: SceneModel, view: View, generator: torch.Generator | None) -> _MirroredLight:
         """All pixels whose pane is known: which of them glass covers, the card alone knows yet."""
-        if model.light is None:
-            return None
         panels = torch.from_numpy(panels_in_view(view, model.corners_m))
         rows, columns = torch.nonzero(panels >= 0, as_tuple=True)
         light, cosines = model.mirrored_by_planes(view, rows, columns, panels[rows, columns], generator)
-        return _MirroredLight(rows, columns, light, cosines)
+        return _MirroredLight(view.width_px, rows, columns, light, cosines)
 
-    def picture(self, view: View) -> Floats:
-        """Light and cosine by pixel, shape (h, w, 4)."""
+    def written(self, device: Device, view: View) -> Piece:
+        """Light and cosine by pixel."""
         found = np.full((view.height_px, view.width_px, 4), NO_MIRROR, np.float32)
         rows, columns = self.rows.numpy(), self.columns.numpy()
         found[rows, columns, :3], found[rows, columns, 3] = self.light.detach(), self.cosines.detach()
-        return found
+        return _written(device, found)
+
+    def march(self, commands: Commands, drawing: Drawing, window: Window, channels: Piece, mirrored: Piece) -> None:
+        """Nothing: it has been written."""
+
+    def march_back(
+        self, commands: Commands, drawing: Drawing, window: Window, channels: Piece, mirrored: Piece
+    ) -> None:
+        """Nothing: the processor does."""
+
+    def asked(self, picture: _CardPicture) -> list[tuple[Piece, int]]:
+        """What is to be read of the card for `gradients`."""
+        return [(picture.mirrored, 16 * picture.n)]
+
+    def gradients(self, raw: NDArray[np.uint8], n_pixels: int) -> Gradients | None:
+        """Of light and cosines; None where they are no numbers."""
+        by_pixel = torch.from_numpy(raw.view(np.float32).reshape(-1, 4) / np.float32(n_pixels))
+        found = by_pixel[self.rows * self.width_px + self.columns]
+        return [(self.light, found[:, :3]), (self.cosines, found[:, 3])]
+
+
+class _MarchedLight:
+    """Light that panes mirror from a radiance grid, marched on the card, forward and back."""
+
+    def __init__(self, device: Device, model: SceneModel, view: View, generator: torch.Generator | None) -> None:
+        glass = model.light
+        assert glass is not None
+        assert isinstance(glass.light, RadianceGrid)
+        self.device, self.grid, grid = device, glass.light, glass.light
+        self.tilts, self.bows = glass.true_tilts(), glass.bows
+        panels = panels_in_view(view, model.corners_m)
+        self.n_panes, self.n_pixels = len(model.corners_m), panels.size
+        self.pane_numbers = _written(device, (panels + 1).astype(np.uint32))
+        eye = -view.cam_from_world[:3, :3].numpy().T @ view.cam_from_world[:3, 3].numpy()
+        self.panes = _table(device, _pane_texels(model, eye, self.tilts, self.bows))
+        self.times = _table(device, np.stack([grid.times, grid.steps], axis=1))
+        self.cells = _table(device, grid.cells.detach().reshape(-1, 4).numpy())
+        self.far = _table(device, grid.far.detach().reshape(-1, 3).numpy())
+        skips = np.zeros(CELLS_IN_A_WORD * rounded_up(grid.skips.size, CELLS_IN_A_WORD), np.uint8)
+        skips[: grid.skips.size] = grid.skips.ravel()
+        self.skips = _written(device, skips.view(np.uint32))
+        self.kept = device.buffer(16 * self.n_pixels * glass.rays)
+        self.n_bytes = 8 * _n_slots(grid, self.n_panes)
+        self.sums = device.buffer(self.n_bytes)
+        z, y, x, _ = grid.cells.shape
+        middle, over, outer, cell = grid.numbers[:3], grid.numbers[3:6], grid.numbers[6], grid.numbers[7]
+        half_m, heading = model.planes.half_side_m, grid.box.heading_rad
+        seed = 0 if generator is None else (generator.initial_seed() & 0xFFFFFFFF) | 1
+        self._uniform = uniform(
+            *((eye + model.origin_enu_m - model.planes.middle_enu_m) / half_m).tolist(), 1.0 / half_m,
+            *middle.tolist(), float(cell), *over.tolist(), float(outer),
+            float(np.cos(heading)), float(np.sin(heading)), float(grid.unit), float(not grid.training),
+            x, y, z, len(grid.far), math.isqrt(glass.rays), len(grid.times), seed, OF_CELL * x * y * z,
+        )  # fmt: skip
+        self._is_cleared = False
+
+    @staticmethod
+    def fits(device: Device, model: SceneModel) -> bool:
+        """Whether a model's light is of a kind that kernels know, in buffers that the card has."""
+        grid = None if model.light is None else model.light.light
+        if not isinstance(grid, RadianceGrid) or {name for name, _ in grid.named_parameters()} != LEARNED_OF_GRID:
+            return False
+        return 8 * _n_slots(grid, len(model.corners_m)) <= device.most_bytes
+
+    def written(self, device: Device, view: View) -> Piece:
+        """Room for light and cosine by pixel."""
+        return device.buffer(16 * self.n_pixels)
+
+    def march(self, commands: Commands, drawing: Drawing, window: Window, channels: Piece, mirrored: Piece) -> None:
+        """Write what the pixels of a window that mirror see, where `channels` say that they do."""
+        self._run("march", commands, drawing, window, channels, mirrored)
+
+    def march_back(
+        self, commands: Commands, drawing: Drawing, window: Window, channels: Piece, mirrored: Piece
+    ) -> None:
+        """Add up gradients from those of a window's light and cosines."""
+        if not self._is_cleared:
+            commands.clear(self.sums, self.n_bytes)
+            self._is_cleared = True
+        self._run("march_back", commands, drawing, window, channels, mirrored, self.sums)
+
+    def _run(
+        self, name: str, commands: Commands, drawing: Drawing, window: Window, channels: Piece, *others: Piece
+    ) -> None:
+        mirrored, *sums = others
+        commands.run(
+            name, GRID | quads(GLASS_FEATURES), groups_of(n_pixels_of(window, drawing.view)),
+            drawing.uniform(window.bins), self._uniform, self.panes, self.times, self.cells, self.far, self.skips,
+            self.pane_numbers, channels, mirrored, self.kept, *sums,
+        )  # fmt: skip
+
+    def asked(self, picture: _CardPicture) -> list[tuple[Piece, int]]:
+        """What is to be read of the card for `gradients`."""
+        return [(self.sums, self.n_bytes)]
+
+    def gradients(self, raw: NDArray[np.uint8], n_pixels: int) -> Gradients | None:
+        """Of cells, of what is far away, and of tilts and bows; None where they are no numbers."""
+        if raw.view(np.uint32)[0]:
+            return None
+        numbers = (raw.view("<i8")[1:] * (1.0 / (FIXED_ONE * n_pixels))).astype(np.float32)
+        ends = np.cumsum([self.grid.cells.numel(), self.grid.far.numel()])
+        of_cells, of_far, of_panes = (torch.from_numpy(part) for part in np.split(numbers, ends))
+        by_pane = of_panes.reshape(-1, 2, 2)
+        found = [
+            (self.grid.cells, of_cells.reshape(self.grid.cells.shape)),
+            (self.grid.far, of_far.reshape(self.grid.far.shape)),
+            (self.tilts, by_pane[:, 0]),
+        ]
+        return found if self.bows is None else [*found, (self.bows, by_pane[:, 1])]
+
+
+def _n_slots(grid: RadianceGrid, n_panes: int) -> int:
+    return 1 + grid.cells.numel() + grid.far.numel() + OF_PANE * n_panes
+
+
+def _pane_texels(model: SceneModel, eye_m: NDArray[np.float64], tilts: Tensor, bows: Tensor | None) -> Floats:
+    """Of each pane six texels, see radiance_grid.wgsl: differences to the camera are taken in float64."""
+    assert model.light is not None
+    corners, normals = model.corners_m, model.planes.normals_enu
+    from_corner = eye_m - corners[:, 0]
+    columns = [np.column_stack([normals, (from_corner * normals).sum(axis=1)])]
+    for number in (1, 3):
+        edge = corners[:, number] - corners[:, 0]
+        over = edge / np.maximum((edge * edge).sum(axis=1, keepdims=True), 1e-20)
+        columns.append(np.column_stack([over, (from_corner * over).sum(axis=1)]))
+    leans, edges = tilts.detach().numpy(), model.light.edges.numpy()
+    columns += [np.column_stack([edges[:, k], leans[:, k]]) for k in range(2)]
+    own = np.zeros((len(corners), 2)) if bows is None else bows.detach().numpy()
+    columns.append(np.pad(own, ((0, 0), (0, 2))))
+    return np.stack(columns, axis=1).reshape(-1, 4).astype(np.float32)
 
 
 class _CardPicture:
@@ -295,7 +472,7 @@ class _CardPicture:
         drawing: Drawing,
         splats: CardSplats,
         sample: Sample,
-        light: _MirroredLight | None,
+        light: _MirroredLight | _MarchedLight | None,
         sky: Tensor,
         model: SceneModel,
         gain: Tensor,
@@ -313,13 +490,12 @@ class _CardPicture:
         self.constants = PICTURE | WORDS | SLOTS | quads(self.n_quads) | {"GLASS": int(with_glass)}
         self.constants["MESH"] = int(has_mesh)
         self.truth = _written(device, packed_photo(sample))
-        self.mirrored = device.buffer(16 * n) if light is None else _written(device, light.picture(view))
+        self.mirrored = device.buffer(16 * n) if light is None else light.written(device, view)
         self.reference = self.truth
         if has_mesh:
             assert sample.normals is not None
             self.reference = _written(device, np.pad(sample.normals.numpy(), ((0, 0), (0, 0), (0, 1))))
-        self.sky = device.table(len(sky.reshape(-1, 3)))
-        device.write_table(self.sky, np.pad(sky.detach().reshape(-1, 3).numpy(), ((0, 0), (0, 1))))
+        self.sky = _table(device, sky.detach().reshape(-1, 3).numpy())
         self.found, self.bodies = device.table(n), device.table(n)
         self.of_found, self.of_bodies = device.buffer(16 * n), device.buffer(16 * n)
         self.n_sum_bytes = 8 * (int_of(SLOTS, "SKY") + self.n_sky)
@@ -337,18 +513,14 @@ class _CardPicture:
     def _groups(self, n: int) -> int:
         return groups_of(-(-n // PIXELS_A_THREAD))
 
-    def _n_pixels(self, window: Window) -> int:
-        rows, columns = window.bins.pixels(self.view)
-        return int((rows.stop - rows.start) * (columns.stop - columns.start))
-
     def light(self, commands: Commands, window: Window, channels: Piece) -> None:
         """Light a window's pixels, and compare them with the photo."""
         if window is self.drawing.windows[0]:
             commands.clear(self.sums, self.n_sum_bytes)
+        n_groups = self._groups(n_pixels_of(window, self.view))
         commands.run(
-            "light_pixels", self.constants, self._groups(self._n_pixels(window)), self.drawing.uniform(window.bins),
-            self._uniform, self.sky, channels, window.states, self.truth, self.mirrored, self.found, self.bodies,
-            self.sums,
+            "light_pixels", self.constants, n_groups, self.drawing.uniform(window.bins), self._uniform, self.sky,
+            channels, window.states, self.truth, self.mirrored, self.found, self.bodies, self.sums,
         )  # fmt: skip
 
     def compare(self, commands: Commands) -> None:
@@ -375,7 +547,7 @@ class _CardPicture:
 
     def back(self, commands: Commands, window: Window, channels: Piece) -> Piece:
         """Gradients of a window's channels, alphas and depths, as `Drawing.blend_back` takes them."""
-        n_pixels = self._n_pixels(window)
+        n_pixels = n_pixels_of(window, self.view)
         wanted = self.device.table((self.n_quads + 1) * n_pixels)
         commands.run(
             "pixels_back", self.constants, self._groups(n_pixels), self.drawing.uniform(window.bins), self._uniform,
@@ -384,14 +556,10 @@ class _CardPicture:
         )  # fmt: skip
         return wanted
 
-    def read(self, commands: Commands) -> tuple[_Sums, Floats | None]:
-        """Sums, and gradients of mirrored light and its cosines by pixel, shape (h, w, 4)."""
-        asked = [(self.sums, self.n_sum_bytes)]
-        if self.constants["GLASS"]:
-            asked.append((self.mirrored, 16 * self.n))
-        sums, *mirrored = commands.read(*asked)
-        shape = self.view.height_px, self.view.width_px, 4
-        return _Sums.of(sums), mirrored[0].view(np.float32).reshape(shape) if mirrored else None
+    @property
+    def read_sums(self) -> tuple[Piece, int]:
+        """What is to be read of the card for `_Sums`."""
+        return self.sums, self.n_sum_bytes
 
     def terms(self, sums: _Sums) -> dict[str, float]:
         """What each weighted term adds to the loss, as `objective` has it."""
@@ -409,6 +577,12 @@ class _CardPicture:
         if self.stage is not None and self.stage.weight > 0.0:
             found["high frequency"] = self.stage.weight * float(large) / (sums.count("N_LARGE") + 1e-6)
         return found
+
+
+def n_pixels_of(window: Window, view: View) -> int:
+    """Pixels of a picture that a window covers."""
+    rows, columns = window.bins.pixels(view)
+    return int((rows.stop - rows.start) * (columns.stop - columns.start))
 
 
 def n_values(width: int, height: int) -> int:
@@ -462,15 +636,21 @@ def _written(device: Device, values: NDArray[np.float32] | NDArray[np.uint32]) -
     return piece
 
 
+def _table(device: Device, values: Floats) -> Piece:
+    """A table of rows of up to four numbers."""
+    piece = device.table(len(values))
+    device.write_table(piece, np.pad(values, ((0, 0), (0, 4 - values.shape[1]))))
+    return piece
+
+
 def _give_back(
     model: SceneModel,
     gain: Tensor,
     move: Tensor | None,
-    light: _MirroredLight | None,
+    of_mirrored: Gradients,
     sky: Tensor,
     more: Tensor | None,
     sums: _Sums,
-    of_mirrored: Floats | None,
     n_pixels: int,
 ) -> None:
     """Hand gradients on to what is not on the card."""
@@ -484,9 +664,7 @@ def _give_back(
     ]
     if move is not None:
         pairs.append((move, torch.from_numpy(sums.some("OF_MOVE", 6) / n_pixels).to(move)))
-    if light is not None and of_mirrored is not None:
-        found = torch.from_numpy(of_mirrored)[light.rows, light.columns] / n_pixels
-        pairs += [(light.light, found[:, :3]), (light.cosines, found[:, 3])]
+    pairs += of_mirrored
     if more is not None:
         pairs.append((more, torch.ones_like(more)))
     pairs = [(value, gradient) for value, gradient in pairs if value.requires_grad]

@@ -26,8 +26,10 @@ from torch import Tensor
 from planning.base.effects import Assessment, Decision, EffectSetting, decide
 from planning.base.errors import InputError, ReconstructionError
 from planning.base.messages import say
-from reconstruction.gpu.device import adapters, why_no_gpu
+from reconstruction.gpu.device import adapters, open_device, why_no_gpu
 from reconstruction.metrics.image_metrics import psnr_db
+from reconstruction.splats.card_splats import OTHER_FEATURES, RATED, AdamStep, CardSplats, fits_card
+from reconstruction.splats.densification.strategy import NO_CHANGES, Limits
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.rasteriser import rasterise
 from reconstruction.splats.rasterising.views import View
@@ -163,6 +165,8 @@ def _tried(config: TrainConfig, splats: Splats, view: View) -> CardTrial:
     try:
         first_s, found = _step(splats, window, replace(settings, on_gpu=True))
         there_s = _step(splats, window, replace(settings, on_gpu=True))[0]
+        if fits_card(splats):
+            here_s, there_s = (_learning_s(splats, window, settings, on_card) for on_card in (False, True))
     except ReconstructionError as error:
         if config.device == "gpu":
             raise
@@ -242,6 +246,9 @@ def try_card() -> None:
     settings = replace(ANTIALIASED, on_gpu=True)
     raster = rasterise(means, quats, torch.full((2, 2), 0.3), torch.full((2,), 0.8), features, view, settings=settings)
     raster.features.sum().backward()  # type: ignore[no-untyped-call]
+    half = torch.full((2,), 0.5)
+    splats = Splats.of(means.detach(), quats, torch.full((2, 2), 0.3), half, half[:, None].expand(2, 3))
+    _learning_s(splats, view, settings, True)
 
 
 def _step(splats: Splats, view: View, settings: RasterSettings) -> tuple[float, list[Tensor]]:
@@ -256,6 +263,32 @@ def _step(splats: Splats, view: View, settings: RasterSettings) -> tuple[float, 
     seconds = time.perf_counter() - began
     gradients = [values.grad for values in (means, scales, opacities, features) if values.grad is not None]
     return seconds, [raster.features.detach(), *gradients]
+
+
+def _learning_s(splats: Splats, view: View, settings: RasterSettings, on_card: bool) -> float:
+    """Seconds of what a step does with splats, from what is learned of them to what has been: the second of two."""
+    own = splats.some(torch.arange(len(splats)))
+    optimiser = torch.optim.AdamW(
+        [{"name": name, "params": [getattr(own, name)]} for name in own.names], lr=0.0, weight_decay=0.0, fused=True
+    )
+    shape = view.height_px, view.width_px
+    pull = torch.rand((*shape, 4 * OTHER_FEATURES + 4), generator=torch.Generator().manual_seed(0))
+    rates = dict.fromkeys((*RATED, "details"), 0.0)
+    by = AdamStep(rates, 1.0, 1.0, 0.0, Limits(), NO_CHANGES, 0)
+    card = CardSplats(open_device(), own, optimiser, with_glass=False) if on_card else None
+    seconds = 0.0
+    for _ in range(2):
+        began = time.perf_counter()
+        if card is None:
+            optimiser.zero_grad(set_to_none=True)
+            features = own.features(view.position_m)
+            raster = rasterise(own.means, own.quats, own.scales, own.opacities, features, view, settings=settings)
+            (raster.features[..., :8] * pull[..., :8]).sum().backward()  # type: ignore[no-untyped-call]
+            optimiser.step()
+        else:
+            card.try_step(view, settings, pull.numpy(), by)
+        seconds = time.perf_counter() - began
+    return seconds
 
 
 if __name__ == "__main__":

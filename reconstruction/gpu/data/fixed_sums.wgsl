@@ -11,14 +11,15 @@ fn add_fixed(slot: u32, value: f32) {
         return;
     }
     let whole = floor(size);
-    var low = u32((size - whole) * 4294967296.0);
+    let low = u32((size - whole) * 4294967296.0);
     var high = u32(whole);
-    if (value < 0.0) {
-        high = ~high;
-        low = ~low + 1u;
-        if (low == 0u) { high += 1u; }
+    if (value > 0.0) {
+        let before = atomicAdd(&sums[FIXED_WORDS * slot], low);
+        if (before + low < before) { high += 1u; }
+        if (high != 0u) { atomicAdd(&sums[FIXED_WORDS * slot + 1u], high); }
+    } else {
+        let before = atomicSub(&sums[FIXED_WORDS * slot], low);
+        if (before < low) { high += 1u; }
+        if (high != 0u) { atomicSub(&sums[FIXED_WORDS * slot + 1u], high); }
     }
-    let before = atomicAdd(&sums[FIXED_WORDS * slot], low);
-    if (before + low < before) { high += 1u; }
-    if (high != 0u) { atomicAdd(&sums[FIXED_WORDS * slot + 1u], high); }
 }

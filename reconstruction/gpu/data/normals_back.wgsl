@@ -57,7 +57,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     }
 //: if MESH
     if (has_reference(number)) {
-        of_normal += weights.by_mesh / f32(sums[N_MESH]) * sign(textureLoad(bodies, texel(number), 0).xyz - reference[number].xyz);
+        let off = textureLoad(bodies, texel(number), 0).xyz - reference[number].xyz;
+        of_normal += weights.by_mesh / f32(sums[N_MESH]) * sign(off);
     }
 //: end
     of_bodies[number] = vec4f(of_normal, of_alpha);

@@ -1,7 +1,7 @@
-//: include texels
 // What all kernels know of the picture: one uniform block, written anew for each picture and window of bins. Splats lie
 // in textures, texel by texel, as wide as TEXELS_A_ROW: bindings of buffers end at 128 MiB on older cards, and textures
 // are read faster.
+//: include texels
 struct View {
     rows: array<vec4f, 3>,      // of the rotation from the model's frame to camera axes
     place: vec4f,               // of the camera in the model's frame, as float32 has it, metres

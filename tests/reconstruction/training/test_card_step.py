@@ -13,10 +13,12 @@ from hypothesis import strategies as st
 from torch import Tensor, nn
 
 from reconstruction.base.out_of_memory import NotFinite
-from reconstruction.gpu.device import Device, open_device, why_no_gpu
+from reconstruction.gpu.device import open_device, why_no_gpu
+from reconstruction.light import radiance_grid
 from reconstruction.light.config import GlassLearned, HighFrequencyStage
 from reconstruction.light.glass_light import GlassLight
 from reconstruction.light.photo_set import PanelPlanes
+from reconstruction.light.radiance_grid import GridBox, RadianceGrid
 from reconstruction.metrics.image_metrics import WINDOW_PX
 from reconstruction.splats.card_splats import PLACES, AdamStep, CardSplats
 from reconstruction.splats.densification.mcmc import MarkovChain
@@ -87,7 +89,24 @@ def made_splats(view: View, *, n: int = 300, solid: bool = False, glass: bool = 
     return splats
 
 
-def made_model(view: View, *, n: int = 300, solid: bool = False, glass: bool = False) -> SceneModel:
+def made_grid() -> RadianceGrid:
+    """With dense and empty places, as none that was trained is."""
+    box = GridBox(0.4, (0.1, 0.8, 0.2), (1.5, 1.1, 1.3), (9, 8, 7), 0.5, 2.0)
+    grid = RadianceGrid(box, 0.3, 0, 16).eval()
+    g = seeded(8)
+    with torch.no_grad():
+        grid.cells[..., 0] = 0.35 * torch.randn(grid.cells.shape[:3], generator=g) - 0.2
+        grid.cells[:, :, :4, 0] = -0.5
+        grid.cells[..., 1:] = 0.2 + 0.8 * torch.rand((*grid.cells.shape[:3], 3), generator=g)
+        grid.far.copy_(0.2 + torch.rand(grid.far.shape, generator=g))
+    grid.refresh()
+    assert 0.05 < (grid.skips > 0).mean() < 0.9
+    return grid
+
+
+def made_model(
+    view: View, *, n: int = 300, solid: bool = False, glass: bool = False, light: nn.Module | None = None
+) -> SceneModel:
     """Splats before a sky of all colours; with `glass`, a pane over a part of the picture that mirrors."""
     corners = np.zeros((0, 4, 3))
     if glass:
@@ -96,15 +115,18 @@ def made_model(view: View, *, n: int = 300, solid: bool = False, glass: bool = F
         rays = np.stack([(x - view.cx_px) / view.fx_px, (y - view.cy_px) / view.fy_px, np.ones(4)], axis=1)
         matrix = view.cam_from_world.numpy()
         corners = ((depth * rays - matrix[:3, 3]) @ matrix[:3, :3])[None]
-    planes, light = PanelPlanes(corners), None
+    planes, mirrored = PanelPlanes(corners), None
     if glass:
-        light = GlassLight(Turning(), planes, GlassLearned(rays=4, tilts=True, bows=True))
-        light.common.zero_()
+        mirrored = GlassLight(light or Turning(), planes, GlassLearned(rays=4, tilts=True, bows=True))
+        mirrored.common.zero_()
+        with torch.no_grad():
+            mirrored.tilts += torch.tensor([0.02, -0.01])
+            mirrored.bows += torch.tensor([-0.01, 0.03])
     sky = Sky(16)
     with torch.no_grad():
         for level in sky.levels:
             level += torch.randn(level.shape, generator=seeded(2))
-    model = SceneModel(made_splats(view, n=n, solid=solid, glass=glass), sky, light, planes, np.zeros(3), 1.5)
+    model = SceneModel(made_splats(view, n=n, solid=solid, glass=glass), sky, mirrored, planes, np.zeros(3), 1.5)
     with torch.no_grad():
         model.corner_loss.fill_(0.3)
     return model.train()
@@ -170,11 +192,11 @@ def by_definition(
 
 
 def by_card(
-    model: SceneModel, sample: Sample, progress: float, settings: RasterSettings, device: Device | None = None
+    model: SceneModel, sample: Sample, progress: float, settings: RasterSettings, marches: bool | None = None
 ) -> Found:
     own = copy.deepcopy(model)
     optimiser = optimiser_of(own)
-    step = CardStep(device or open_device(), own, optimiser)
+    step = CardStep(open_device(), own, optimiser, marches)
     gain, move = start(torch.float32)
     gradients, terms = step.gradients(sample, gain, move, 3, settings, WEIGHTS, progress, None)
     strategy = FixedNumber()
@@ -220,6 +242,22 @@ def test_a_step_is_the_defined_one_in_losses_and_gradients(
         assert relative_error(found.gradients[name], gradient) < GRADIENT_ERROR, name
     pulls = truth.pulls.norm(dim=1) * (view.width_px * view.height_px)
     assert relative_error(found.pulls, pulls) < GRADIENT_ERROR
+
+
+def test_mirrored_rays_march_through_the_radiance_grid_forward_and_back_as_on_the_processor(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(radiance_grid, "MANY_MOVED", 1 << 30)
+    view = turned_view(47, 35, 45.0)
+    model, sample = made_model(view, glass=True, light=made_grid()), made_sample(view, glass=True)
+    model.light.light.eval()
+    # Both have float32: what the processor found, brought to the card, is what the card finds by itself.
+    truth, found = (by_card(model, sample, LATE, ANTIALIASED, marches) for marches in (False, True))
+    assert found.terms == pytest.approx(truth.terms, rel=1e-4)
+    for name, gradient in truth.gradients.items():
+        if gradient is not None:
+            assert float(gradient.norm()) > 0.0, name
+            assert relative_error(found.gradients[name], gradient) < GRADIENT_ERROR, name
 
 
 def card_similarity(found: Tensor, photo: Tensor) -> tuple[float, Tensor]:

@@ -63,7 +63,8 @@ def test_programs_in_the_place_of_a_card_are_not_chosen_by_themselves(
 
 
 def test_a_card_is_tried_and_the_reason_says_how_it_did(splats: Splats, monkeypatch: pytest.MonkeyPatch) -> None:
-    times = {False: iter([0.5, 0.2]), True: iter([2.0, 0.05])}
+    times = {False: iter([0.5, 0.3]), True: iter([2.0, 0.01])}
+    monkeypatch.setattr(devices, "_learning_s", lambda *given: 0.05 if given[3] else 0.2)
     monkeypatch.setattr(devices, "why_no_gpu", str)
     monkeypatch.setattr(devices, "adapters", lambda: (CARD,))
     monkeypatch.setattr(devices, "_survives", lambda: True)
@@ -74,9 +75,7 @@ def test_a_card_is_tried_and_the_reason_says_how_it_did(splats: Splats, monkeypa
     assert decision.size == pytest.approx(0.75)
     assert "Intel UHD 620 takes 50 ms, the processor 200 ms" in decision.reason
     # One that draws something else is not taken, nor one that fails.
-    monkeypatch.setattr(
-        devices, "_step", lambda _, __, s: (1.0 - 0.9 * s.on_gpu, [1.0 + 0.1 * s.on_gpu * torch.ones(3)])
-    )
+    monkeypatch.setattr(devices, "_step", lambda _, __, s: (1.0, [1.0 + 0.1 * s.on_gpu * torch.ones(3)]))
     on, decision = drawn_by_card(SMALL, splats, level_view())
     assert not on
     assert "does not draw what the processor draws (apart: 0.1)" in decision.reason
@@ -157,7 +156,7 @@ def test_a_training_on_the_card_is_the_one_on_the_processor_and_survives_the_car
         usual = getattr(owner, method)
 
         def lost(self: object, *given: object, usual: object = usual, calls: object = calls) -> object:
-            if next(calls) == 4:
+            if next(calls) == 6:
                 self.device.raw.destroy()
             return usual(self, *given)
 
