@@ -104,8 +104,9 @@ def read_ply(content: bytes) -> list[Triangle]:
     """Triangles of a mesh as Reflight writes it."""
     head, _, body = content.partition(b"end_header\n")
     found = re.fullmatch(PLY, head)
-    n, n_faces = (int(found[1]), int(found[2])) if found else (0, -1)
-    demand(len(body) == 12 * n + 13 * n_faces, "the mesh is no binary PLY file of triangles alone")
+    n = int(found[1]) if found else len(content)
+    is_whole = found is not None and len(body) == 12 * n + 13 * int(found[2])
+    demand(is_whole, "the mesh is no binary PLY file of triangles alone")
     vertices = [vector(list(xyz), "vertex") for xyz in struct.iter_unpack("<3f", body[: 12 * n])]
     faces = list(struct.iter_unpack("<B3I", body[12 * n :]))
     demand(all([sides == 3 and max(a, b, c) < n for sides, a, b, c in faces]), "a face of the mesh is no triangle")

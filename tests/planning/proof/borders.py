@@ -7,6 +7,7 @@ mutants apart which tampered files seldom reach.
 from __future__ import annotations
 
 import copy
+import itertools
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
@@ -158,6 +159,9 @@ def _of_volumes(probe: Probe) -> Iterator[Any]:
         yield border(lambda gap, a=a, b=b, by=by: case.solids.clear([a, b], by, gap), 0.0, 50.0)
         beside = [case.directions[int(n)] for n in probe.proof["no_fly"][s][k]]
         yield border(lambda gap, a=a, b=b, by=beside: case.no_fly.clear([a, b], by, gap), 0.0, 50.0)
+    for height in (3e-4, 4.99e-4, 5.01e-4, 6e-4, 9e-4, 1.1e-3, 1.5e-3):
+        for a, b, c in itertools.permutations([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.5, height, 0.0)]):
+            yield module.distance((0.5, height / 3.0, 0.0), (a, b, c)), module.distance((0.4, 0.0, 1.0), (a, b, c))
     shapes = [[tuple(random.uniform(-9.0, 9.0) for _ in range(3)) for _ in range(3)] for _ in range(12)]
     for shape in (*shapes, [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1e-4, 0.0)], [(0.0, 0.0, 0.0)] * 3):
         for _ in range(4):
@@ -491,6 +495,19 @@ def _of_numbers(probe: Probe) -> Iterator[Any]:
                     [] if isinstance(found, str) else [getattr(found, each) for each in ("near_m", "far_m", "low", "n")]
                 )
                 yield name, path, value, found if isinstance(found, str) else "read", asked, shown
+    of_plan, of_site = ("constraints", "min_height_above_ground_m"), ("airspace", "min_height_above_ground_m")
+    for heights in (
+        (None, None),
+        (6.0, None),
+        (None, 7.0),
+        (6.0, 7.0),
+        (0.0, None),
+        (None, 0.0),
+        (-1.0, None),
+        (None, -1.0),
+    ):
+        changed = probe.with_number("plan", of_plan, heights[0]) | probe.with_number("site", of_site, heights[1])
+        yield probe.said(lambda changed=changed: probe.case(**changed).low)
     for name, path in (("site", ("terrain",)), ("site", ("zones",)), ("plan", ("rules",)), ("plan", ("origin",))):
         for odd in (None, [], {}, "", [{}], 0.0):
             changed = probe.with_number(name, path, odd)

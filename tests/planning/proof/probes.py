@@ -113,6 +113,8 @@ def answers(module: ModuleType) -> Iterator[Any]:
             yield _answer(lambda value=value, most=most: module.vector([most, 0.0, value], "it"))
         yield _answer(lambda value=value: module.vector([value, 1.0], "it", 2, 3.0))
         yield _answer(lambda value=value: module.vector(value, "it"))
+    for record in ({"id": "A", "panels": []}, {"id": "A", "panels ": []}, {}, [], None, "id", ["id"]):
+        yield _answer(lambda record=record: module.known(record, "a facade"))
     for angle in ANGLES:
         yield module.sincos(angle)
     yield from _geometry(module, random)
