@@ -308,7 +308,7 @@ def run_trial(request: WorthRequest, trial: FlightTrial, folder: Path) -> Flight
     if path.is_file():
         known = to_record(read_json(path), FlightResult, path)
         if set(request.lights) <= set(known.psnr_db):
-            return known
+            return _of_lights(known, request)
     ready = _prepared(request)
     make_folder(place)
     plan = _plan(request, trial, ready, place / "plan.json")
@@ -334,7 +334,12 @@ def run_trial(request: WorthRequest, trial: FlightTrial, folder: Path) -> Flight
         scores,
     )
     write_atomically(path, json.dumps(asdict(result), indent=1).encode())
-    return result
+    return _of_lights(result, request)
+
+
+def _of_lights(kept: FlightResult, request: WorthRequest) -> FlightResult:
+    """Of what was measured of a flight, also before, what is asked for."""
+    return replace(kept, psnr_db={light: kept.psnr_db[light] for light in request.lights})
 
 
 RESULT_FILE, VIEWS_FILE = "result.json", "views.json"

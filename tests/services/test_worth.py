@@ -55,7 +55,8 @@ def test_what_is_finished_is_not_done_again(tmp_path):
     trial = FlightTrial("random", 50, 0, "planned")
     place = tmp_path / trial.name
     place.mkdir()
-    (place / "result.json").write_text(json.dumps(asdict(known)))
+    with_another = replace(known, psnr_db={**known.psnr_db, "mlp": {"random": 24.0}})
+    (place / "result.json").write_text(json.dumps(asdict(with_another)))
     assert run_trial(WorthRequest("no such scene", lights=("radiance-grid",)), trial, tmp_path) == known
 
 
