@@ -28,6 +28,7 @@ from groundstation.gui.plan.plan_page import PanelPaint, PlanPage, RoutePaint
 from groundstation.gui.reconstruct.reconstruct_controller import Phase
 from groundstation.gui.reconstruct.reconstruct_page import ReconstructPage
 from groundstation.gui.shared_view import SharedViewPage
+from groundstation.gui.view3d.canvas import Canvas
 from groundstation.gui.widgets.questions import Answer, Questions
 from groundstation.gui.window.main_window import MainWindow
 from groundstation.gui.window.project_controller import ProjectController
@@ -560,6 +561,8 @@ class _Tour(QObject):
 
     def _take(self, name: str, widget: QWidget | None = None, rest_ms: int = SETTLE_MS) -> None:
         self._rest(rest_ms)
+        for canvas in self._window.findChildren(Canvas):
+            canvas.show_all_layers()
         path = self._folder / f"{name}.png"
         if not (self._window if widget is None else widget).grab().save(str(path)):
             raise InputError(say("the picture cannot be written", place=path))

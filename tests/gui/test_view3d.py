@@ -797,7 +797,7 @@ def test_photos_on_panels_are_asked_for_when_there_are_some_and_lie_before_the_p
     assert ((shown[..., 0] > 100) & (shown[..., 1:] < 30).all(axis=2)).sum() == 0
 
 
-def test_the_first_picture_comes_a_layer_a_frame_and_whole_for_whom_takes_it(application, view):
+def test_first_frames_have_few_layers_and_pictures_that_are_taken_all(application, view):
     view.set_site(roof())
     canvas = view.canvas()
     application.processEvents()

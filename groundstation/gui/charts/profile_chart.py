@@ -374,17 +374,18 @@ class ProfileChart(QWidget):
             return
         length = length_unit(self._units)
         level = (
-            (limits.ground_m, self.tr("ground"), found.muted, 0.15, True),
-            (limits.legal_m, self.tr("legal ceiling"), found.error, 0.25, True),
+            (limits.ground_m, self.tr("ground"), found.muted, 0.15),
+            (limits.legal_m, self.tr("legal ceiling"), found.error, 0.25),
         )
-        for height_m, name, colour, place, is_below in (
+        # Names stand below their lines: what is flown is above the floor.
+        for height_m, name, colour, place in (
             *(level if limits.is_level else ()),
-            (limits.floor_m, self.tr("airspace floor"), found.warning, 0.45, False),
-            (limits.ceiling_m, self.tr("airspace ceiling"), found.warning, 0.75, True),
+            (limits.floor_m, self.tr("airspace floor"), found.warning, 0.45),
+            (limits.ceiling_m, self.tr("airspace ceiling"), found.warning, 0.75),
         ):
             if not shown_m[0] <= height_m <= shown_m[1]:
                 continue
-            anchor = (0.5, 0.0 if is_below else 1.0)
+            anchor = (0.5, 0.0)
             line = pg.InfiniteLine(
                 height_m * length.factor,
                 angle=0,

@@ -238,7 +238,7 @@ class PhotosController(QObject):
                 show(surfaces)
 
         self._start(
-            self.tr("Photos on panels"),
+            self.tr("Photos on the building"),
             lambda context: context.run_in_process(panel_pictures, model, usable, intake.metadata),
             done,
         )

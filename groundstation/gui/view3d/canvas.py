@@ -128,7 +128,7 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
         self._background = ("#ffffff", "")
         self._pinhole: Pinhole | None = None
         self._is_detail_due = False
-        # What is drawn for the first time is compiled for it, 70 ms in all: a frame more for each layer.
+        # What is drawn for the first time is compiled for it, 70 ms in all: first frames have few layers.
         self._n_layers = 0
         self.n_painted = 0
         self.is_open = True
@@ -249,12 +249,16 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
             self._show_detail()
         super().paintGL()
         if self._n_layers < len(self._drawn) and self.is_open:
-            self._n_layers += 1
+            self._n_layers = 2 * self._n_layers + 1
             QTimer.singleShot(0, self, self._detail_changed)
+
+    def show_all_layers(self) -> None:
+        """Have the next frame be whole, whatever is compiled for it."""
+        self._n_layers, self._is_detail_due = len(self._drawn), True
 
     def picture(self) -> NDArray[np.uint8]:
         """What is drawn, without what lies over the widget, shape (height, width, 3)."""
-        self._n_layers, self._is_detail_due = len(self._drawn), True
+        self.show_all_layers()
         return image_array(self.grabFramebuffer())
 
     def _detail_changed(self) -> None:

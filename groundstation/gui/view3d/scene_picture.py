@@ -41,9 +41,9 @@ from groundstation.gui.view3d.site_scene import (
     FRUSTUM_M,
     PlanScene,
     SiteScene,
-    before_panels,
     glass_colours,
     landing_pad,
+    lifted,
     panels_drawable,
     plan_frusta,
     plan_scene,
@@ -341,8 +341,14 @@ class ScenePicture(QWidget):
         self._want_photos()
 
     def set_panel_photos(self, surfaces: Sequence[Surface]) -> None:
-        """Draw panels as photos show them, while that layer is shown."""
-        self._canvas.draw(Layer.PHOTOS, tuple(map(before_panels, surface_drawables(surfaces))))
+        """Draw panels and walls as photos show them, while that layer is shown; panels stay before walls."""
+        self._canvas.draw(
+            Layer.PHOTOS,
+            tuple(
+                lifted(drawn, 0.5 if surface.part is Part.WALLS else 2.0)
+                for surface, drawn in zip(surfaces, surface_drawables(surfaces), strict=True)
+            ),
+        )
 
     def _want_photos(self) -> None:
         if self._has_photos and self.is_layer_visible(Layer.PHOTOS):

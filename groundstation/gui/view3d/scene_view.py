@@ -354,7 +354,7 @@ class SceneView(ScenePicture):
                 Layer.SHADOWS: self.tr("Shadows"),
                 Layer.GROUND: self.tr("Ground"),
                 Layer.SURROUNDINGS: self.tr("Simulated surroundings"),
-                **({Layer.PHOTOS: self.tr("Photos on panels")} if self._has_photos else {}),
+                **({Layer.PHOTOS: self.tr("Photos on the building")} if self._has_photos else {}),
                 Layer.LABELS: self.tr("Names"),
             }
         return titles

@@ -363,10 +363,10 @@ def surface_drawables(surfaces: Sequence[Surface]) -> tuple[Drawable, ...]:
     return tuple(map(_surface, surfaces))
 
 
-def before_panels(drawable: Drawable) -> Drawable:
-    """Triangles that lie on panels, where they are seen: before the panels as those are drawn."""
+def lifted(drawable: Drawable, share: float) -> Drawable:
+    """Triangles on walls or panels, lifted off by a share of the way by which panels are drawn before walls."""
     normals = np.repeat(triangle_normals(TriangleMesh(drawable.points_enu_m, drawable.cells)), 3, axis=0)
-    return replace(drawable, points_enu_m=drawable.points_enu_m + 2.0 * PANEL_OFFSET_M * normals)
+    return replace(drawable, points_enu_m=drawable.points_enu_m + share * PANEL_OFFSET_M * normals)
 
 
 def _surface(surface: Surface) -> Drawable:
