@@ -381,6 +381,8 @@ class PictureDevices:
             return False
         (version, draw, n_splats), self._undecided = self._undecided, None
         self._decided[version] = shown_by_card(draw, n_splats, "auto")
+        if not any(decision.on for decision in self._decided.values()):
+            self._on_card.clear()
         while len(self._decided) > MOST_MODELS:
             self._decided.popitem(last=False)
         return True
