@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from PySide6.QtCore import QObject, Qt, Signal
-from PySide6.QtGui import QKeySequence, QShortcut
+from PySide6.QtGui import QKeySequence, QResizeEvent, QShortcut
 from PySide6.QtWidgets import QButtonGroup, QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
@@ -27,6 +27,9 @@ MARKS = {"error": "\u2717", "warning": "!"}
 """Sign beside the name of an aircraft with a warning: none is told by colour alone."""
 
 N_KEYS = 9
+MOST_TALL, LARGEST_TALL_PX, LINE_ASIDE_PX = 2, 22, 14
+"""So many aircraft have two lines each of so high a text at most, else one, so that all buttons keep their room on a
+small screen; what frame and padding take of a button's height."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,16 +134,25 @@ class FleetBox(QWidget):
 
     def set_rows(self, rows: tuple[FleetRow, ...], selected: int) -> None:
         """Show these aircraft; none: hide."""
+        self._rows = rows
         while len(self._buttons) < len(rows):
             self._add()
+        self._write()
         for button, row in zip(self._buttons, rows, strict=False):
-            self._fill(button, row)
             button.setChecked(row.number == selected)
         for button in self._buttons[len(rows) :]:
             button.hide()
         set_enabled(self.return_all, any(row.is_in_air for row in rows))
-        self._rows = rows
         self.setVisible(bool(rows))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Fit the words to another width."""
+        super().resizeEvent(event)
+        self._write()
+
+    def _write(self) -> None:
+        for button, row in zip(self._buttons, self._rows, strict=False):
+            self._fill(button, row)
 
     def button(self, number: int) -> QPushButton:
         """The button of an aircraft, from 1."""
@@ -155,7 +167,6 @@ class FleetBox(QWidget):
         button = QPushButton()
         button.setCheckable(True)
         button.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        button.setMinimumHeight(2 * button.fontMetrics().height() + 14)
         if number <= N_KEYS:
             keys = shown_keys(QKeySequence(_keys(number)))
             button.setToolTip(self.tr("Show this aircraft; the buttons below are for it ({0})").format(keys))
@@ -167,9 +178,12 @@ class FleetBox(QWidget):
     def _fill(self, button: QPushButton, row: FleetRow) -> None:
         mark = MARKS.get(row.role, "")
         title = f"{mark} {row.name}: {row.state}" if mark else f"{row.name}: {row.state}"
-        wide = max(40, button.width() - 2 * APART_PX)
+        wide = max(40, self.width() - 2 * APART_PX)
         metrics, cut = button.fontMetrics(), Qt.TextElideMode.ElideRight
-        text = "\n".join(metrics.elidedText(each, cut, wide) for each in (title, row.details))
+        is_tall = len(self._rows) <= MOST_TALL and metrics.height() <= LARGEST_TALL_PX
+        lines = (title, row.details) if is_tall else (f"{title}, {row.details}",)
+        button.setMinimumHeight(len(lines) * metrics.height() + LINE_ASIDE_PX)
+        text = "\n".join(metrics.elidedText(each, cut, wide) for each in lines)
         if button.text() != text:
             button.setText(text)
             button.setAccessibleName(f"{title}, {row.details}")

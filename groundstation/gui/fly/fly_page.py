@@ -310,6 +310,7 @@ class FlyPage(GradualTab):
         self._show_units(context.units)
         self._show_document()
         self._show_all()
+        self._show_fleet()
 
     # A tab
 

@@ -32,6 +32,8 @@ class ActiveFlight:
         What happened: how long after take-off (None on the ground), how severe, and the text.
     took_off_s
         When the motors started, by the vehicle's own clock; None on the ground.
+    was_on_ground
+        It was heard before that, so that it is known.
     """
 
     sortie: LiveSortie
@@ -46,6 +48,7 @@ class ActiveFlight:
     last_text_s: float = -math.inf
     battery: float | None = None
     took_off_s: float | None = None
+    was_on_ground: bool = False
 
     def take_view(self, view: LiveView) -> tuple[VehicleText, ...]:
         """The flight as it stands now; returns the autopilot's texts that are new."""
@@ -53,6 +56,7 @@ class ActiveFlight:
         state = view.state
         if self.took_off_s is None and state.is_armed:
             self.took_off_s = state.boot_time_s
+        self.was_on_ground |= state.heartbeat is not None and not state.is_armed
         if state.motion is not None and view.link is LinkState.ALIVE:
             place = state.motion.value.position_enu_m
             if not self.track_enu_m or self.track_enu_m[-1] != place:
@@ -126,11 +130,11 @@ class LiveAircraft:
         return self.active is not None and self.active.sortie.case.plan is plan
 
     def since_take_off_s(self) -> float | None:
-        """How long its motors have been running; None on the ground."""
+        """How long its motors have been running, infinity where nobody saw them start; None on the ground."""
         view = self.view
         if self.active is None or view is None or not view.state.is_armed:
             return None
-        return self.active.since_take_off_s(view)
+        return self.active.since_take_off_s(view) if self.active.was_on_ground else math.inf
 
 
 def sortie_of(plan: Plan | None, number: int) -> int:

@@ -573,48 +573,43 @@ class LivePictures(QObject):
 
     def draw(self) -> None:
         """Bring what is seen up to date, where anything changed."""
-        flight = self._flight
-        if not self._is_shown or not self._is_stale or flight is None or flight.view is None:
+        shown = [(self._number, self._flight), *self._others]
+        heard = [(number, flight) for number, flight in shown if flight is not None and flight.view is not None]
+        if not self._is_shown or not self._is_stale or not heard:
             return
         self._is_stale = False
+        # Where the selected aircraft is not connected, the first of the others is drawn in full.
+        first, *others = heard
         if self._shared_view.page() is SharedViewPage.MAP:
-            self._draw_map(flight, flight.view)
+            self._draw_map(first, others)
         elif self._shared_view.page() is SharedViewPage.SCENE and self._scene is not None:
-            self._draw_scene(self._scene, flight, flight.view)
+            self._draw_scene(self._scene, first, others)
 
     def _scene_is_there(self, scene: SceneView) -> None:
         if self._scene is None:
             self._scene = LiveScene(scene)
         self._is_stale = True
 
-    def _draw_scene(self, scene: LiveScene, flight: ActiveFlight, view: LiveView) -> None:
-        plan = flight.sortie.case.plan
-        scene.draw_views(self._states(view), {viewpoint.id: viewpoint for viewpoint in plan.viewpoints})
+    def _draw_scene(self, scene: LiveScene, first: Numbered, others: Sequence[Numbered]) -> None:
+        number, flight = first
+        plan, view = flight.sortie.case.plan, flight.view
+        assert view is not None
+        states = _states([first, *others])
+        scene.draw_views(states, {viewpoint.id: viewpoint for viewpoint in plan.viewpoints})
         following = _next_place(flight, view)
         scene.draw_aircraft(view.state, _thinned(flight), plan.camera, view.readouts.facade_m, following)
         own = None if view.state.motion is None else view.state.motion.value
-        scene.draw_others(self._name(self._number), own, tuple(self._beside()))
-        counted = max(self._counted(flight), key=lambda each: each.covered, default=None)
+        scene.draw_others(self._name(number), own, tuple(self._beside(others)))
+        counted = max(_counted(flight, others), key=lambda each: each.covered, default=None)
         if self._has_photo and counted is not None:
             self._has_photo = False
             self._paint_coverage(flight, counted)
 
-    def _counted(self, flight: ActiveFlight) -> list[PhotoCounted]:
-        """What the flights counted last; those of one plan count together, so the largest is the latest."""
-        plan = flight.sortie.case.plan
-        flights = [flight, *(each for _, each in self._others if each.sortie.case.plan is plan)]
-        return [each.counted for each in flights if each.counted is not None]
-
     def _name(self, number: int | None) -> str:
         return "" if number is None else self.tr("Aircraft {0}").format(number)
 
-    def _states(self, view: LiveView) -> tuple[tuple[str, ViewState], ...]:
-        """How the views of all sorties that are flown now stand."""
-        views = (view, *(each.view for _, each in self._others if each.view is not None))
-        return tuple(itertools.chain.from_iterable(each.view_states for each in views))
-
-    def _beside(self) -> Iterator[OtherInScene]:
-        for number, flight in self._others:
+    def _beside(self, others: Sequence[Numbered]) -> Iterator[OtherInScene]:
+        for number, flight in others:
             state = None if flight.view is None else flight.view.state
             if state is not None and state.motion is not None:
                 attitude = LEVEL if state.attitude is None else state.attitude.value
@@ -632,7 +627,10 @@ class LivePictures(QObject):
         np.divide(100.0 * ((counted.counts > 0) & planned).sum(axis=1), n_planned, out=share, where=n_planned > 0)
         view.set_panel_values(ColourScale(self.tr("Flown of what is planned"), "%", 0.0, 100.0), share)
 
-    def _draw_map(self, flight: ActiveFlight, view: LiveView) -> None:
+    def _draw_map(self, first: Numbered, beside: Sequence[Numbered]) -> None:
+        number, flight = first
+        view = flight.view
+        assert view is not None
         map_view = self._shared_view.findChild(MapView)
         if map_view is None:
             return
@@ -640,14 +638,13 @@ class LivePictures(QObject):
             self._map = LiveMap(map_view)
         origin = flight.sortie.case.site_model.site.origin
         by_id = {viewpoint.id: viewpoint.position_enu_m for viewpoint in flight.sortie.case.plan.viewpoints}
-        self._map.set_views(
-            origin, tuple((by_id[view_id], state) for view_id, state in self._states(view) if view_id in by_id)
-        )
+        states = _states([first, *beside])
+        self._map.set_views(origin, tuple((by_id[view_id], state) for view_id, state in states if view_id in by_id))
         heading = 0.0 if view.state.attitude is None else view.state.attitude.value.heading_rad
         camera = None if view.state.camera is None else view.state.camera.value.heading_rad
         self._map.set_aircraft(origin, _thinned(flight), heading, camera, _next_place(flight, view))
-        others = [(other.name, other.track_enu_m, other.attitude.heading_rad) for other in self._beside()]
-        self._map.set_others(origin, self._name(self._number), others)
+        others = [(other.name, other.track_enu_m, other.attitude.heading_rad) for other in self._beside(beside)]
+        self._map.set_others(origin, self._name(number), others)
         self._map.show()
 
     def _clear(self) -> None:
@@ -658,6 +655,23 @@ class LivePictures(QObject):
             scene.set_panel_values(None)
         if self._map is not None:
             self._map.hide()
+
+
+Numbered = tuple[int | None, ActiveFlight]
+"""A flight with the number of its aircraft; None where one flies alone."""
+
+
+def _states(flights: Sequence[Numbered]) -> tuple[tuple[str, ViewState], ...]:
+    """How the views of all sorties that are flown now stand."""
+    views = (flight.view for _, flight in flights)
+    return tuple(itertools.chain.from_iterable(view.view_states for view in views if view is not None))
+
+
+def _counted(flight: ActiveFlight, others: Sequence[Numbered]) -> list[PhotoCounted]:
+    """What the flights counted last; those of one plan count together, so the largest is the latest."""
+    plan = flight.sortie.case.plan
+    flights = [flight, *(each for _, each in others if each.sortie.case.plan is plan)]
+    return [each.counted for each in flights if each.counted is not None]
 
 
 def _next_place(flight: ActiveFlight, view: LiveView) -> NDArray[np.float64] | None:

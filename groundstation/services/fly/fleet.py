@@ -274,7 +274,7 @@ class Fleet:
         Parameters
         ----------
         in_air
-            For how long the motors of sorties have been running, by their number.
+            For how long the motors of sorties have been running, by their number; infinity where nobody knows.
         slower
             How many times as long as planned its autopilot takes for each of these sorties.
 
@@ -286,7 +286,7 @@ class Fleet:
         spans: list[tuple[float, float]] = []
         for other, since_s in in_air.items():
             found = self._forbidden_s((other, slower[other]), (number, slower[number]))
-            if found is None:
+            if found is None or math.isinf(since_s):
                 return math.inf
             spans += [(low - since_s, high - since_s) for low, high in found.tolist()]
         wait_s = 0.0

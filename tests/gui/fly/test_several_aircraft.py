@@ -182,6 +182,10 @@ def test_a_plan_for_two_shows_two_and_what_is_asked_is_asked_of_the_selected_one
     assert aircraft(page, 2).flight is not None
     assert aircraft(page, 1).flight is None
     choose(page, 1)
+    application.processEvents()
+    page.pictures.draw()
+    labels = [label.text for label in page._shared_view.scene()._overlay._labels]
+    assert "Aircraft 2" in labels, "drawn although another one is selected"
     assert page.connection.button.text() == "Connect"
     assert not page.buttons.button(Request.UPLOAD).isEnabled()
     page.sortie.setCurrentIndex(aircraft(page, 2).sortie_number - 1)
@@ -190,6 +194,11 @@ def test_a_plan_for_two_shows_two_and_what_is_asked_is_asked_of_the_selected_one
     application.processEvents()
     assert "Aircraft 2 has sortie" in controller.window.messages.texts()
     assert aircraft(page, 1).flight is None
+    controller._rebuild_window()
+    page = controller.window.tab("fly")
+    controller.window.show_tab("fly")
+    turn_until_idle(application, controller)
+    assert page.fleet.isVisible(), "in another language, too"
     model, plan = planned()
     alone = replace(plan, rules=replace(plan.rules, at_once=1), sorties=tuple(single(each) for each in plan.sorties))
     choose(page, 2)

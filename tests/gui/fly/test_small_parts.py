@@ -1,5 +1,7 @@
 """Parts of the Fly tab that need no flight: what is kept for the next start, and the notes."""
 
+import dataclasses
+
 import pytest
 
 from groundstation.services.fly.options import FlightSettings
@@ -105,3 +107,27 @@ def test_a_caster_is_kept_and_its_password_is_not(application, tmp_path, monkeyp
     write_preferences(flight_settings_path(), kept[-1])
     assert "secret" not in flight_settings_path().read_text()
     page.close()
+
+
+def test_each_aircraft_has_a_row_and_many_have_one_line_each(application):
+    from groundstation.gui.fly.fleet_box import FleetBox, FleetRow
+
+    box, chosen = FleetBox(), []
+    box.resize(400, 300)
+    box.selected.connect(chosen.append)
+    rows = tuple(FleetRow(n, f"Aircraft {n}", "AUTO", "sortie 1, 80%", is_in_air=n == 2) for n in (1, 2, 3))
+    box.set_rows(rows[:1], 1)
+    assert not box.return_all.isEnabled()
+    box.set_rows(rows[:2], 2)
+    assert box.text() == "Aircraft 1: AUTO\nsortie 1, 80%\nAircraft 2: AUTO\nsortie 1, 80%"
+    assert [box.button(n).isChecked() for n in (1, 2)] == [False, True]
+    assert box.return_all.isEnabled()
+    box.button(1).click()
+    assert chosen == [1]
+    tall = box.button(1).minimumHeight()
+    box.set_rows((*rows[:2], dataclasses.replace(rows[2], role="error")), 2)
+    assert box.button(1).text() == "Aircraft 1: AUTO, sortie 1, 80%"
+    assert box.button(1).minimumHeight() < tall
+    assert box.button(3).text().startswith("\u2717 Aircraft 3"), "no warning is told by colour alone"
+    box.set_rows((), 1)
+    assert not box.isVisibleTo(None)

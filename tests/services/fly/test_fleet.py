@@ -1,5 +1,6 @@
 """What flights of one plan share: places, photos, starts, and the order in which all return."""
 
+import math
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -88,6 +89,7 @@ def test_a_start_waits_until_the_other_is_out_of_the_way_and_longer_for_a_slow_a
     assert now_s > 0.0
     assert found.wait_s(2, {1: 10.0}, usual) == pytest.approx(now_s - 10.0)
     assert found.wait_s(2, {1: now_s}, usual) == 0.0
+    assert found.wait_s(2, {1: math.inf}, usual) == math.inf, "nobody saw it start"
     slow_s = found.wait_s(2, {1: 0.0}, {1: 1.3, 2: 1.3})
     assert 1.2 * now_s < slow_s < 1.3 * now_s + 1.0
 
