@@ -5,21 +5,28 @@ from __future__ import annotations
 import statistics
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import torch
 
-from reconstruction.gpu.device import Adapter, adapters, why_no_gpu
+from reconstruction.gpu.device import Adapter, adapters, open_device, why_no_gpu
+from reconstruction.light.reflective_panels import ModelName
+from reconstruction.metrics.image_metrics import psnr_db
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.rasteriser import rasterise
 from reconstruction.training.callbacks import Callbacks, TrainingSnapshot
 from reconstruction.training.config import ANTIALIASED, TrainConfig
+from reconstruction.training.devices import LEAST_DB
+from reconstruction.training.model.card_pictures import CardPictures
+from reconstruction.training.model.render import Rendered, render_view
 from reconstruction.training.train import train_model
 from tests.benchmarks.experiments import rendered
 from tests.benchmarks.harness import Benchmark, Context, Row, Skipped
+from tests.benchmarks.model_frames import building, view
 from tests.benchmarks.rasteriser import N_CHANNELS, Scene, synthetic_scene
 
 CASES = (((256, 192), 20_000), ((1024, 768), 100_000), ((2048, 1536), 1_000_000))
@@ -32,6 +39,10 @@ MOST_STEP = 3.0
 MOST_APART_DB = 0.2
 
 N_VIEWS, WIDTH_PX = 12, 256
+
+LIGHTS: tuple[ModelName | None, ...] = (None, "environment-map", "mlp")
+VIEWS = 3
+"""Pictures of a model, of which the least time counts."""
 STEPS, QUICK_STEPS = 30, 5
 
 
@@ -51,6 +62,10 @@ def measure(context: Context) -> Iterator[Row]:
     cases = QUICK_CASES if context.is_quick else SOFTWARE_CASES if card.is_software else CASES
     for size, n in cases:
         yield from _of_rasterisers(synthetic_scene(size, n), f"{size[0]} x {size[1]}, {n} splats")
+    (width, _), n = cases[0] if card.is_software else cases[-1]
+    # A network of its own for each pixel takes a program in the place of a card minutes.
+    for light in LIGHTS[:2] if card.is_software else LIGHTS:
+        yield from _of_views(width, n, light)
     with tempfile.TemporaryDirectory() as place:
         folder = rendered("planar", Path(place) / "planar", N_VIEWS, WIDTH_PX)
         yield from _of_trainings(folder, card, QUICK_STEPS if context.is_quick else STEPS)
@@ -91,6 +106,33 @@ def _both(scene: Scene, settings: RasterSettings) -> tuple[float, float]:
         torch.autograd.backward((raster.features, raster.alphas, raster.depths), scene.wanted)
         runs.append((time.perf_counter() - started, time.process_time() - processor))
     return min(run[0] for run in runs[1:]), min(run[1] for run in runs[1:])
+
+
+def _of_views(width: int, n: int, light: ModelName | None) -> Iterator[Row]:
+    """Pictures as the window shows them: least time, and how far they are from the processor's."""
+    model, at = building(n, light), view(width)
+    staying = CardPictures(model, open_device())
+    name = f"{at.width_px} x {at.height_px}, {n} splats of a model, mirrored light: {light or 'none'}"
+    drawing: dict[str, Callable[[], Rendered]] = {
+        "processor": lambda: render_view(model, at, ("depth",), settings=ANTIALIASED),
+        "card": lambda: staying.picture(at, 1.0, ANTIALIASED),
+    }
+    pictures, first = {}, (0.0, 0.0)
+    for by, draw in drawing.items():
+        pictures[by] = draw().display
+        runs = []
+        for _ in range(VIEWS):
+            started, processor = time.perf_counter(), time.process_time()
+            draw()
+            runs.append((time.perf_counter() - started, time.process_time() - processor))
+        found = min(run[0] for run in runs), min(run[1] for run in runs)
+        first = found if by == "processor" else first
+        for kind, seconds, own in (("", found[0], first[0]), (", time of the processor", found[1], first[1])):
+            ratio = (None, "") if by == "processor" else (seconds / own, "as long as the processor")
+            yield Row(name, f"a picture, {by}{kind}", round(1e3 * seconds, 1), "ms", *ratio)
+    error = float(np.mean((pictures["card"] - pictures["processor"]).astype(float) ** 2))
+    target = f"{LEAST_DB:g} dB at least", psnr_db(error) >= LEAST_DB
+    yield Row(name, "a picture, card, against the processor's", round(psnr_db(error), 1), "dB", None, "", *target)
 
 
 def _of_trainings(folder: Path, card: Adapter, steps: int) -> Iterator[Row]:
