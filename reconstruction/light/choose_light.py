@@ -367,5 +367,6 @@ def _tried(
         environment_rows=min(config.environment_rows, 64),
         time_limit_s=limit_s,
         high_frequency=(),
+        bows="off",
     )
     return train_reflections(seen, planes, model, trial, monitor=monitor, clock=clock, device=device)

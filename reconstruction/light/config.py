@@ -165,6 +165,8 @@ class ReflectionConfig:
         Of a radiance grid.
     learned
         Rays of each pixel, and what is learned of panes and poses; None for one ray, and tilts beside a radiance grid.
+    bows
+        Whether bows of panes are learned there, too: `glass_light.BowedPanes`.
     environment_rows
         Of the finest picture of the environment map: 1.4 degrees a pixel.
     places
@@ -215,6 +217,7 @@ class ReflectionConfig:
     mlp: MlpShape = field(default_factory=lambda: MlpShape(width=128, layers=4, position_order=8, direction_order=4))
     grid: GridSettings = field(default_factory=GridSettings)
     learned: GlassLearned | None = None
+    bows: EffectSetting = "auto"
     environment_rows: int = 128
     places: int = 3
     diffuse_degree: int = 1

@@ -23,13 +23,14 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from planning.base.effects import decide
+from planning.base.effects import Decision, decide
 from planning.base.errors import OperationCancelled, ReconstructionError
 from planning.base.messages import say
 from planning.base.progress import QUIET, Clock, Monitor
 from reconstruction.base.adam import Adam
 from reconstruction.base.out_of_memory import NotFinite, is_out_of_memory
 from reconstruction.light.config import Precision, ReflectionConfig
+from reconstruction.light.glass_light import BOWS_TRIED, UNKNOWN, BowedPanes
 from reconstruction.light.glass_rays import GlassRays
 from reconstruction.light.losses import no_brighter, ray_errors, ray_loss
 from reconstruction.light.radiance_grid import RadianceGrid
@@ -82,6 +83,7 @@ class LightProgress:
     factor: float = 1.0
     n_undone: int = 0
     transients: float = UNSEEN
+    bowed_px: float = UNKNOWN
     history: list[tuple[float, float]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
@@ -182,6 +184,8 @@ class LightTraining:
             group["lr"] = at.factor * group["rate"] * config.rate(at.step, progress)
         if progress >= TRIED:
             self._leave_out_transients()
+        if progress >= BOWS_TRIED:
+            self._settle_bows()
         rows = torch.randint(len(self.rays), (at.batch,), generator=self.generator)
         batch = self.rays[rows.to(self.device)]
         with torch.autocast(self.device.type, torch.bfloat16, enabled=self.precision == "bfloat16"):
@@ -208,6 +212,23 @@ class LightTraining:
             if not self._is_finite():
                 raise NotFinite(say("a weight is not a number"))
             self._good = copy.deepcopy(self.state())
+
+    def _settle_bows(self) -> None:
+        """Decide, once, whether panes stay bowed; those of a model that was asked for by itself do."""
+        at, light, config = self.at, self.panels.light, self.config
+        if at.bowed_px != UNKNOWN or config.learned is not None or light is None or light.bows is None:
+            return
+        at.bowed_px = light.bowed_px(self.rays)
+        if not decide(BowedPanes(), at.bowed_px, config.bows).on:
+            light.flatten()
+            self.optimiser = _optimiser(self.panels, config, self.optimiser)
+
+    def decisions(self) -> tuple[Decision, ...]:
+        """About what was tried on the way."""
+        light, config = self._first.light, self.config
+        if config.learned is not None or light is None or not isinstance(light.light, RadianceGrid):
+            return ()
+        return (decide(BowedPanes(), self.at.bowed_px, config.bows),)
 
     @torch.no_grad()
     def _leave_out_transients(self) -> None:
@@ -268,6 +289,8 @@ class LightTraining:
             for grid, level in zip(_grids(panels), state["levels"], strict=True):
                 while grid.level > level >= 0:
                     grid.grow()
+            if panels.light is not None and "light.bows" not in state["panels"]:
+                panels.light.flatten()
             panels.load_state_dict(state["panels"])
             for grid, empty in zip(_grids(panels), state["empty places"], strict=True):
                 if tuple(empty.shape) != grid.skips.shape or empty.dtype != torch.uint8:

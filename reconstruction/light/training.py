@@ -15,6 +15,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.messages import say
 from planning.base.progress import QUIET, Clock, Monitor, QualityPoint
@@ -68,6 +69,8 @@ class TrainedReflections:
         What had to be survived on the way.
     transients
         Blocks of photos whose rays were left out, as `Blocks` numbers them; shape (0,) where none were.
+    decisions
+        About effects, on the way.
     """
 
     panels: ReflectivePanels
@@ -83,6 +86,7 @@ class TrainedReflections:
     health: MlpHealth | None
     notes: tuple[str, ...] = ()
     transients: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
+    decisions: tuple[Decision, ...] = ()
 
     @property
     def box(self) -> GridBox | None:
@@ -156,6 +160,7 @@ def train_reflections(
         health,
         tuple(at.notes),
         training.transients,
+        training.decisions(),
     )
 
 
@@ -212,7 +217,8 @@ def untrained_panels(
         if box is None:
             raise ValueError("box: expected that of the radiance grid")
         light = RadianceGrid(box, expected, level, config.grid.far_side)
-        places, degree, learned = config.grid.places, config.grid.diffuse_degree, GlassLearned(tilts=True)
+        places, degree = config.grid.places, config.grid.diffuse_degree
+        learned = GlassLearned(tilts=True, bows=config.bows != "off")
     else:
         raise ValueError(f"model: expected mlp, environment-map, harmonics or radiance-grid, got {model!r}")
     diffuse = (DIFFUSE_SHARE * means / (1.0 - REFLECTIVITY)).clamp(0.01, 0.99)

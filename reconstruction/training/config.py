@@ -189,7 +189,8 @@ class TrainConfig:
     degree, degree_every
         Of spherical harmonics at last, and share of the training after which it rises by one.
     window_px
-        Pixels of a photo that a step looks at, at most: a random window of larger photos.
+        Pixels of a photo that a step looks at, at most: a random window of larger photos. Where a time limit leaves
+        room for too few steps, windows are smaller: `trainer.ENOUGH_STEPS`.
     reduce
         Pixels of a photo, along each side, that one is made of before it is learned from.
     raster

@@ -736,7 +736,7 @@ def _learned_light(
         raise InputError(
             say("is of another version, or damaged ({}); begin the training anew", error, place=checkpoint)
         ) from error
-    return _LightLearned(trained, splats, stage.decisions)
+    return _LightLearned(trained, splats, (*stage.decisions, *trained.decisions))
 
 
 def _light_limit_s(config: TrainConfig, watch: Timer) -> float | None:

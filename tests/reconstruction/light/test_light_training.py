@@ -4,13 +4,16 @@ import itertools
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 import torch
 
+from planning.base.effects import decide
 from planning.base.errors import OperationCancelled, ReconstructionError
 from planning.base.progress import QUIET
 from reconstruction.light import light_training
 from reconstruction.light.config import PAPER_STAGES, GlassLearned, GridSettings, ReflectionConfig
+from reconstruction.light.glass_light import UNKNOWN
 from reconstruction.light.glass_rays import glass_rays
 from reconstruction.light.light_training import LEAST_BATCH, MOST_HALVINGS, CheckpointSettings, LightTraining, on_device
 from reconstruction.light.losses import ray_errors, ray_loss
@@ -19,9 +22,9 @@ from reconstruction.light.radiance_grid import RadianceGrid
 from reconstruction.light.ray_table import RayTable
 from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.light.reflective_panels import ReflectivePanels
-from reconstruction.light.training import new_panels, train_reflections
+from reconstruction.light.training import mean_square_error, new_panels, train_reflections
 from reconstruction.training.training_state import read_checkpoint, write_checkpoint
-from tests.reconstruction.light.synthetic_folder import near, write_folder
+from tests.reconstruction.light.synthetic_folder import far, near, write_folder
 
 GRID = GridSettings(most_cells=2048, levels=2, far_side=16, batch_share=1.0, rest=3, grown=0.6)
 CONFIG = ReflectionConfig(
@@ -268,3 +271,73 @@ def test_rays_of_somebody_who_walked_by_are_left_out_and_stay_out(photos):
     everything = training((seen, planes, unseen), "environment-map", replace(config, transients="off"))
     everything.run(None, 1)
     assert len(everything.rays) == len(rays)
+
+
+BOW = 0.08
+"""Radians, at the panes' edges."""
+
+
+def of_bowed_panes(places, omega_r):
+    """`far`, mirrored by panes that bulge: normals lean outwards towards the edges of the panes of `corners_of`."""
+    off = np.mod(places[:, [0, 2]] - 1.0, 2.0) - 1.0
+    normals = np.column_stack([BOW * off[:, 0], -np.ones(len(off)), BOW * off[:, 1]])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    arriving = omega_r * (1.0, -1.0, 1.0)
+    return far(places, arriving - 2.0 * (arriving * normals).sum(axis=1, keepdims=True) * normals)
+
+
+BOWED = replace(CONFIG, learned=None, steps=120, batch=512, grid=replace(GRID, levels=0, far_side=64, tilt_rate=5e-3))
+
+
+@pytest.fixture(scope="module")
+def bowed_photos(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("bowed") / "photos"
+    write_folder(folder, of_bowed_panes, 6)
+    source = read_photo_set(folder)
+    return glass_rays(source, source.photos[:5]), source.panels, glass_rays(source, source.photos[5:])
+
+
+def test_panes_stay_bowed_where_photos_show_that_they_are(bowed_photos):
+    found = training(bowed_photos, config=BOWED)
+    found.run(None, 1)
+    (decision,) = found.decisions()
+    assert decision.on
+    assert decision.decided_by == "scene"
+    # Normals lean along the lower edge, eastwards at its end, and up the left one.
+    assert (found.panels.light.bows.detach().median(dim=0).values > 0.2 * BOW).all()
+    flat = training(bowed_photos, config=replace(BOWED, bows="off"))
+    flat.run(None, 1)
+    errors = [mean_square_error(each.panels, bowed_photos[2]) for each in (found, flat)]
+    assert errors[0] < 0.5 * errors[1]
+
+
+def test_panes_are_flat_where_bows_move_little_and_go_on_so_bit_by_bit(photos, monkeypatch):
+    monkeypatch.setattr(light_training, "decide", lambda effect, scene, setting: decide(effect, scene, setting, 1e9))
+    config = replace(CONFIG, learned=None)
+    found = training(photos, config=config)
+    while found.at.bowed_px == UNKNOWN:
+        found.step()
+    found.step()
+    again = training(photos, config=config)
+    again.restore(found.state())
+    for each in (found, again):
+        each.step()
+        assert each.panels.light.bows is None
+        assert not each.panels.light.learned.bows
+        assert not each.decisions()[0].on
+    assert_same(found.panels, again.panels)
+
+
+@pytest.mark.parametrize(("setting", "are_bowed"), [("on", True), ("off", False)])
+def test_bows_are_as_the_user_says(photos, setting, are_bowed):
+    found = training(photos, config=replace(CONFIG, learned=None, bows=setting))
+    found.run(None, 1)
+    assert (found.panels.light.bows is not None) == are_bowed
+    (decision,) = found.decisions()
+    assert (decision.on, decision.decided_by) == (are_bowed, "user")
+
+
+def test_other_lights_have_no_bows_to_decide_about(photos):
+    found = training(photos, "environment-map", replace(CONFIG, learned=None))
+    found.run(None, 1)
+    assert found.decisions() == ()

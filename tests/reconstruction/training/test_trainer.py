@@ -335,6 +335,35 @@ def test_time_limits_end_it_with_rates_at_their_last(make, monkeypatch):
     assert lr["colours"] < 0.3 * full["colours"]
 
 
+@pytest.mark.parametrize(
+    ("n_steps", "expected"), [(50.0, 12288), (500.0, 24576), (1000.0, 49152), (1e5, 49152), (0.0, 12288)]
+)
+def test_windows_are_as_small_as_leaves_room_for_enough_steps(n_steps, expected):
+    assert trainer_module.fitting_window_px(49152, n_steps) == expected
+    assert trainer_module.fitting_window_px(5000, n_steps) == 5000
+
+
+def test_windows_are_made_smaller_once_where_few_steps_fit_into_the_time(make, monkeypatch):
+    monkeypatch.setattr(trainer_module, "LEAST_WINDOW_PX", 100)
+    trainer, _ = timed(make, monkeypatch, 11.0)
+    trainer.run(Callbacks())
+    assert trainer.at.step == 11
+    assert trainer.at.window_px == trainer.photos.window_px == 300
+    assert trainer.n_pixels <= 300
+    (note,) = trainer.at.notes
+    assert "300 pixels" in note
+    assert "11 steps with 1200" in note
+
+
+def test_windows_stay_where_enough_steps_fit_into_the_time(make, monkeypatch):
+    monkeypatch.setattr(trainer_module, "LEAST_WINDOW_PX", 100)
+    trainer, _ = timed(make, monkeypatch, 11.0)
+    monkeypatch.setattr(trainer_module, "ENOUGH_STEPS", 11)
+    trainer.run(Callbacks())
+    assert trainer.n_pixels == 1200
+    assert not trainer.at.notes
+
+
 def test_what_went_before_counts_for_the_time_limit(make, monkeypatch):
     trainer, _ = timed(make, monkeypatch, 8.0, before_s=5.0)
     trainer.run(Callbacks())
