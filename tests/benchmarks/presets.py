@@ -33,7 +33,7 @@ POINTS = 12
 
 KNOBS: dict[str, tuple[Any, ...]] = {
     "max_splats": (12_000, 60_000),
-    "reflections.grid.most_cells": (1 << 16, 1 << 20),
+    "reflections.grid.most_cells": (1 << 16, 1 << 18),
     "window_px": (128 * 96, 192 * 144),
     "reduce": (2,),
     "light_share": (0.2, 0.55),
