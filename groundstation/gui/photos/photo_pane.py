@@ -151,7 +151,7 @@ class PhotoPane(QWidget):
         self._pictures.addWidget(self.scene)
         layout.addWidget(self._pictures, 1)
         store.largeReady.connect(self._take)
-        self.set_text(self.tr("Choose a photo in the strip below."))
+        self.set_text(self.tr("Photos are shown here once they have been read."))
         self._show()
 
     def set_text(self, text: str) -> None:

@@ -262,7 +262,9 @@ class PlanPage(GradualTab):
         self._detail = QTabWidget()
         self._detail.addTab(self.chart, self.tr("Quality"))
         self._detail.addTab(self.worth, self.tr("Worth"))
-        self._detail.addTab(self.effects, self.tr("Effects"))
+        # Cards of many effects are higher than a small screen.
+        self.effects_area = scrolled(self.effects)
+        self._detail.addTab(self.effects_area, self.tr("Effects"))
         self._detail.addTab(self.panel, self.tr("Panel"))
         self._detail.addTab(scrolled(self.viewpoint), self.tr("View"))
         return self._detail

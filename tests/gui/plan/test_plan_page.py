@@ -55,11 +55,11 @@ def moved(viewpoint, east_m):
 def test_edits_and_undo_leave_the_page_that_is_read_in_front(application, controller, page):
     (viewpoint,) = first_views(controller)
     controller.context.select(Item(ItemKind.VIEWPOINT, viewpoint.id))
-    page.right.setCurrentWidget(page.effects)
+    page.right.setCurrentWidget(page.effects_area)
     page.controller.set_viewpoint(moved(viewpoint, 0.5))
-    assert page.right.currentWidget() is page.effects
+    assert page.right.currentWidget() is page.effects_area
     controller.context.session.undo()
-    assert page.right.currentWidget() is page.effects
+    assert page.right.currentWidget() is page.effects_area
 
 
 @pytest.mark.slow
@@ -115,12 +115,14 @@ def test_effects_are_looked_at_only_while_somebody_does(application, controller,
     page.controller.set_viewpoint(moved(first_views(controller)[0], 0.5))
     turn_until_idle(application, controller)
     assert LOOK not in names
-    page.right.setCurrentWidget(page.effects)
+    page.right.setCurrentWidget(page.effects_area)
     turn_until_idle(application, controller)
     assert names.count(LOOK) == 1
+    assert len(page.effects._choices) >= 5
+    assert controller.window.minimumSizeHint().height() <= 720, "however many effects there are"
     page.controller.set_request(PlanRequest(n_views=10))
     page.right.setCurrentWidget(page.chart)
-    page.right.setCurrentWidget(page.effects)
+    page.right.setCurrentWidget(page.effects_area)
     turn_until_idle(application, controller)
     assert names.count(LOOK) == 1, "the number of views has no effect on effects"
 

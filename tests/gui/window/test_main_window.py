@@ -70,7 +70,7 @@ def test_window_opens_a_site_plans_it_and_shows_both(application, controller):
     assert "roof: panels 32" in controller.window.messages.texts()
     assert "Views: 12, sorties: 1" in controller.window.messages.texts()
     assert page.verdict().startswith("Ready to fly")
-    page.right.setCurrentWidget(page.effects)
+    page.right.setCurrentWidget(page.effects_area)
     turn_until_idle(application, controller)
     assert page.effects.card("occlusion").text().splitlines()[1] == "is off"
     scene.look_at_all()
