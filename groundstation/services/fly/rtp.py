@@ -69,14 +69,12 @@ class RtpVideo:
         number, clock = self.payload_type, ENCODINGS[self.encoding]
         lines = [
             *("v=0", "o=- 0 0 IN IP4 127.0.0.1", "s=video", f"c=IN IP4 {self.host}", "t=0 0"),
-            *(
-                " ".join(("m=video", str(self.port), "RTP/AVP", str(number))),
-                f"a=rtpmap:{number} {self.encoding}/{clock}",
-            ),
+            *(f"m=video {self.port} RTP/AVP {number}", f"a=rtpmap:{number} {self.encoding}/{clock}"),
         ]
         if self.encoding == "H264":
             sets = f";sprop-parameter-sets={self.sets}" if self.sets else ""
-            lines.append(f"a=fmtp:{number} packetization-mode=1{sets}")
+            packing = f"a=fmtp:{number} packetization-mode=1{sets}"
+            lines.append(packing)
         return "\r\n".join([*lines, ""])
 
 
