@@ -137,14 +137,21 @@ def drawn_by_card(config: TrainConfig, splats: Splats, view: View) -> tuple[bool
     return found.on, found
 
 
-def _untried(is_auto: bool) -> CardTrial | None:
-    """Why the first card is not even tried; None where it is to be."""
+def why_no_card() -> str:
+    """What there is in the place of a graphics card that may be chosen by itself; empty where there is one."""
     reason = why_no_gpu()
     if reason:
-        return CardTrial("", say("no graphics card: {}", reason))
+        return say("no graphics card: {}", reason)
     card = adapters()[0]
-    if card.is_software and is_auto:
-        return CardTrial(card.name, say("there is no graphics card but {}, which the processor runs", card.name))
+    return say("there is no graphics card but {}, which the processor runs", card.name) if card.is_software else ""
+
+
+def _untried(is_auto: bool) -> CardTrial | None:
+    """Why the first card is not even tried; None where it is to be."""
+    reason = why_no_card()
+    if why_no_gpu() or (reason and is_auto):
+        return CardTrial("", reason)
+    card = adapters()[0]
     if is_auto and not _survives():
         return CardTrial(card.name, say("{} ended the process that tried it, or did not answer", card.name))
     return None

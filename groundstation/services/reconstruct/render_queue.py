@@ -355,6 +355,7 @@ class PictureDevices:
             As `ViewRequest` has it.
         """
         from reconstruction.gpu.device import adapters, why_no_gpu
+        from reconstruction.training.devices import why_no_card
 
         if wanted == "cpu":
             return False, say("the processor, as you asked")
@@ -366,7 +367,7 @@ class PictureDevices:
             reason = why_no_gpu()
             return not reason, say("no graphics card: {}", reason) if reason else say("{}, as you asked", adapters()[0])
         found = self._decided.get(shown.version)
-        return (False, "") if found is None else (found.on, found.reason)
+        return (False, why_no_card()) if found is None else (found.on, found.reason)
 
     def ask(self, shown: ShownModel, draw: Draw) -> None:
         """Decide about a model later, by pictures such as this one."""

@@ -240,6 +240,7 @@ def test_a_model_is_decided_about_when_nobody_waits_and_the_reason_is_said(folde
         return replace(DECISION, on=False, reason="Arc takes 50 ms, the processor 20 ms")
 
     monkeypatch.setattr(devices, "shown_by_card", decided)
+    monkeypatch.setattr(devices, "why_no_card", str)
     asked = look(folders / "scene", camera(folders), drawn_by="auto")
     before = render_queue.answer(asked)
     assert (before.by_card, before.drawn_by) == (False, "")
@@ -250,3 +251,10 @@ def test_a_model_is_decided_about_when_nobody_waits_and_the_reason_is_said(folde
     lens = asked.camera.intrinsics
     n_splats = len(render_queue._models.of(folders / "scene").model.splats)
     assert tried == [((lens.height_px, lens.width_px, 3), n_splats, "auto")]
+
+
+def test_where_there_is_no_card_the_first_picture_says_so(folders, render_queue, monkeypatch):
+    monkeypatch.setattr(devices, "why_no_gpu", lambda: "no driver answers")
+    found = render_queue.answer(look(folders / "scene", camera(folders), drawn_by="auto"))
+    assert (found.by_card, found.drawn_by) == (False, "no graphics card: no driver answers")
+    assert not render_queue.prepare()
