@@ -248,7 +248,7 @@ class LightTraining:
             blocks,
             _blocks_of(blocks, chosen),
             errors.float().cpu().numpy(),
-            chosen.panels.cpu().numpy().astype(np.int64),
+            torch.cat([part.middle().points for part in parts]).double().cpu().numpy(),
         )
         if decide(LeaveTransientsOut(), Seen(at.transients, 0.0), setting).on:
             self._without(found)

@@ -170,8 +170,7 @@ class TrainConfig:
     own_poses
         Whether each photo's pose is corrected while splats are learned: `poses.PoseCorrections`.
     transients
-        Whether what only single photos show is left out of them: `transients.LeaveTransientsOut`. Off by default: what
-        a poor model errs by is not yet told from it surely enough.
+        Whether what only single photos show is left out of them: `transients.LeaveTransientsOut`.
     light_apart
         Whether light that is learned apart from the splats is worth it: `start.SeparateLight`. On, rays of glass alone
         decide which; off, nothing is tried.
@@ -216,7 +215,7 @@ class TrainConfig:
     overexposed: EffectSetting = "auto"
     own_exposures: EffectSetting = "auto"
     own_poses: EffectSetting = "auto"
-    transients: EffectSetting = "off"
+    transients: EffectSetting = "auto"
     light_apart: EffectSetting = "auto"
     points_for_mesh: EffectSetting = "auto"
     start_from: StartFrom = "surfaces"

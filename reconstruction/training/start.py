@@ -613,7 +613,7 @@ def _joint_trial(
         _joined(source, seen, own, light, None, origin, config),
         Exposures([source.own_exposures.get(photo.name, 1.0) for photo in seen]),
         PoseCorrections(seen, origin),
-        Transients([(photo.intrinsics.width_px, photo.intrinsics.height_px) for photo in seen], 1.0),
+        Transients([(photo.intrinsics.width_px, photo.intrinsics.height_px) for photo in seen]),
         photos,
         strategy_of(short, len(own)),
         short,

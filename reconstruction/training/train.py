@@ -298,7 +298,7 @@ def _transients(source: PhotoSet, record: ModelRecord, known: NDArray[np.bool_] 
     """Of the photos that are learned from, to begin with."""
     reduce, lenses = record.config.reduce, [photo.intrinsics for photo in source.named(record.learned)]
     sizes = [(lens.width_px // reduce, lens.height_px // reduce) for lens in lenses]
-    return Transients(sizes, record.extent_m, known)
+    return Transients(sizes, known, record.config.losses.white)
 
 
 def _pixels(source: PhotoSet, names: Sequence[str]) -> int:

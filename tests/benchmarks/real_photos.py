@@ -402,8 +402,8 @@ FAULTS: dict[str, Callable[[Path, Path], None]] = {
 
 OVERRULED = {
     with_poses_off: ("own_poses", "off", "ours, poses as told"),
-    passers_by: ("transients", "on", "ours, passers-by left out"),
-    mirrored_passers_by: ("transients", "on", "ours, passers-by left out"),
+    passers_by: ("transients", "off", "ours, passers-by not left out"),
+    mirrored_passers_by: ("transients", "off", "ours, passers-by not left out"),
 }
 """Effect and its setting in one more training with a fault, and what that is called."""
 

@@ -94,8 +94,8 @@ class Case:
                 del settings[part]["white"]
         settings["rates"].pop("poses")
         settings["reflections"].pop("transients")
-        if settings["transients"] == "off":
-            del settings["transients"]
+        if settings["transients"] in ("auto", "off"):
+            del settings["transients"]  # photos of these scenes agree
         if not config.trained_by.knows_panels:
             settings = {name: value for name, value in settings.items() if name not in OF_PANELS}
             settings["rates"].pop("glass_geometry")

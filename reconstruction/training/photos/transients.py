@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from planning.base.effects import Decision, EffectSetting, decide
+from reconstruction.light.losses import no_brighter
 from reconstruction.light.transients import (
     COST,
     TRIED,
@@ -17,18 +18,13 @@ from reconstruction.light.transients import (
     Blocks,
     LeaveTransientsOut,
     Seen,
+    evidence,
     mean_errors,
-    share_of_error,
+    places_of,
     transients,
 )
 from reconstruction.splats.rasterising.views import View
 from reconstruction.training.photos.photo_stream import Sample
-
-PLACES = 1 << 16
-"""Of the scene that are told apart where there is no panel, by their surfaces' coordinates."""
-
-PLACE_SHARE = 1.0 / 24.0
-"""Side of such a place, of the scene's size."""
 
 NEW_SHARE = 0.3
 """Of a new look in a block's error."""
@@ -43,22 +39,24 @@ class Transients(nn.Module):
     ----------
     sizes_px
         Width and height of each photo that is learned from.
-    extent_m
-        Size of the scene.
     known
         Blocks that are known to be transients from the beginning, shape (n_blocks,); None for none.
+    white
+        Value from which on photos are taken as overexposed: no model is too bright there.
     """
 
     def __init__(
-        self, sizes_px: Sequence[tuple[int, int]], extent_m: float, known: NDArray[np.bool_] | None = None
+        self, sizes_px: Sequence[tuple[int, int]], known: NDArray[np.bool_] | None = None, white: float = 1.0
     ) -> None:
         super().__init__()
-        self.blocks, self._place_m = Blocks(sizes_px), PLACE_SHARE * extent_m
+        self.blocks, self._white = Blocks(sizes_px), white
         n = len(self.blocks)
         self.errors: Tensor
         self.register_buffer("errors", torch.full((n,), UNSEEN))
-        self.places: Tensor
-        self.register_buffer("places", torch.zeros(n, dtype=torch.int32))
+        self.points: Tensor
+        self.register_buffer("points", torch.zeros(n, 3))
+        self.on_glass: Tensor
+        self.register_buffer("on_glass", torch.zeros(n, dtype=torch.bool))
         self.left_out: Tensor
         self.register_buffer("left_out", torch.zeros(n, dtype=torch.bool))
         if known is not None and known.shape == (n,):
@@ -86,7 +84,8 @@ class Transients(nn.Module):
         height, width = depths.shape
         of_pixels = self.blocks.of_window(sample.number, sample.x_px, sample.y_px, width, height)
         first = int(of_pixels[0, 0])
-        errors = (display.cpu() - sample.display.cpu() / 255.0).numpy().reshape(-1, 3)
+        truth = sample.display.cpu() / 255.0
+        errors = (no_brighter(display.cpu(), truth, self._white) - truth).numpy().reshape(-1, 3)
         found, counts = mean_errors(of_pixels.ravel() - first, errors, int(of_pixels[-1, -1]) - first + 1)
         side = int(self.blocks.sides_px[sample.number])
         seen = np.flatnonzero(2 * counts >= side * side)
@@ -95,24 +94,14 @@ class Transients(nn.Module):
         before = held[of_blocks]
         held[of_blocks] = np.where(before == UNSEEN, found[seen], before + NEW_SHARE * (found[seen] - before))
         # Of several pixels of a block the last one tells where it is.
-        places = np.zeros(int(of_pixels[-1, -1]) - first + 1, np.int64)
         every = max(1, side // 4)
         rows, columns = np.mgrid[every // 2 : height : every, every // 2 : width : every]
-        panels = sample.panels.cpu().numpy()[rows, columns]
-        surfaces = self._places(sample.view, columns, rows, depths.detach().cpu().numpy()[rows, columns])
-        places[of_pixels[rows, columns] - first] = np.where(panels >= 0, panels - PLACES, surfaces)
-        self.places.numpy()[of_blocks] = places[seen]
+        places = of_pixels[rows, columns].ravel()
+        points = _points(sample.view, columns, rows, depths.detach().cpu().numpy()[rows, columns])
+        is_seen = np.isin(places, of_blocks)
+        self.points.numpy()[places[is_seen]] = points.reshape(-1, 3)[is_seen]
+        self.on_glass.numpy()[places[is_seen]] = (sample.panels.cpu().numpy()[rows, columns] >= 0).ravel()[is_seen]
         self.n_looks += 1
-
-    def _places(
-        self, view: View, columns: NDArray[np.int64], rows: NDArray[np.int64], depths: NDArray[np.float32]
-    ) -> NDArray[np.int64]:
-        x, y = (columns + 0.5 - view.cx_px) / view.fx_px, (rows + 0.5 - view.cy_px) / view.fy_px
-        depths = np.minimum(depths, FAR_M)
-        matrix = view.cam_from_world.numpy()
-        points = (np.stack([x * depths, y * depths, depths], axis=-1) - matrix[:3, 3]) @ matrix[:3, :3]
-        a, b, c = np.moveaxis(np.floor(points / self._place_m).astype(np.int64), -1, 0)
-        return np.asarray((a * 73_856_093 ^ b * 19_349_663 ^ c * 83_492_791) % PLACES)
 
     def settle(self, setting: EffectSetting, progress: float) -> None:
         """Find transients anew, once for about each look at every photo; the first time tells what they are worth.
@@ -127,12 +116,13 @@ class Transients(nn.Module):
         is_first = float(self.share) == UNSEEN
         if not self.are_looked_for(setting) or not (is_first or int(self.n_looks) % len(self.blocks.shapes) == 0):
             return
-        errors, are = self.errors.numpy(), np.zeros(len(self.blocks), np.bool_)
-        known = errors != UNSEEN
-        are[known] = transients(errors[known].astype(float), self.places.numpy()[known].astype(np.int64))
+        are, known = np.zeros(len(self.blocks), np.bool_), np.flatnonzero(self.errors.numpy() != UNSEEN)
+        errors, photos = self.errors.numpy()[known].astype(float), self.blocks.photos[known]
+        places = places_of(self.points.numpy()[known], self.on_glass.numpy()[known].astype(np.int64), photos)
         if is_first:
-            self.share.fill_(share_of_error(errors[known].astype(float), are[known]))
+            self.share.fill_(evidence(errors, places, photos))
         if self.are_looked_for(setting):
+            are[known] = transients(errors, places, photos)
             self.left_out.copy_(torch.from_numpy(self.blocks.with_neighbours(are)))
         else:
             self.left_out.zero_()
@@ -149,3 +139,13 @@ class Transients(nn.Module):
     def decision(self, setting: EffectSetting, seconds: float) -> Decision:
         """About all of it; `seconds` is what the training takes."""
         return decide(LeaveTransientsOut(), Seen(float(self.share), COST * seconds), setting)
+
+
+def _points(
+    view: View, columns: NDArray[np.int64], rows: NDArray[np.int64], depths: NDArray[np.float32]
+) -> NDArray[np.float64]:
+    """What pixels show, shape (..., 3), in the model's frame."""
+    x, y = (columns + 0.5 - view.cx_px) / view.fx_px, (rows + 0.5 - view.cy_px) / view.fy_px
+    depths = np.minimum(depths, FAR_M)
+    matrix = view.cam_from_world.numpy()
+    return np.asarray((np.stack([x * depths, y * depths, depths], axis=-1) - matrix[:3, 3]) @ matrix[:3, :3])

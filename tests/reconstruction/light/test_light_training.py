@@ -260,7 +260,7 @@ def test_rays_of_somebody_who_walked_by_are_left_out_and_stay_out(photos):
     config = replace(CONFIG, steps=60, transients="on", learned=None)
     found = training((seen, planes, unseen), "environment-map", config)
     found.run(None, 1)
-    assert 0.0 < found.at.transients < 1.0
+    assert found.at.transients == 0.0  # one photo alone is no evidence, and the user wants it
     assert len(found.rays) < len(rays)
     left = (found.rays.photos == 1) & (found.rays.columns >= 8) & (found.rays.columns < 24)
     assert float(left.sum() / person.sum()) < 0.2

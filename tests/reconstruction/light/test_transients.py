@@ -8,9 +8,13 @@ from hypothesis import strategies as st
 from reconstruction.light.transients import (
     BLOCK_PX,
     LEAST_ERROR,
+    LEAST_PHOTOS,
     MOST_BLOCKS,
     Blocks,
+    LeaveTransientsOut,
+    evidence,
     mean_errors,
+    places_of,
     transient_blocks,
     transients,
 )
@@ -61,8 +65,8 @@ def test_what_errs_in_one_photo_is_a_transient_and_what_errs_in_all_is_not():
     usual = np.where(np.arange(n_places) < 6, 0.12, 0.02)  # a fifth of the places is hard to learn
     errors = usual * rng.uniform(0.7, 1.3, (n_photos, n_places))
     errors[4, 20] = errors[7, 25] = 0.2
-    places = np.broadcast_to(np.arange(n_places), errors.shape)
-    found = transients(errors.ravel(), places.ravel()).reshape(errors.shape)
+    photos, places = np.indices(errors.shape).reshape(2, -1)
+    found = transients(errors.ravel(), places, photos).reshape(errors.shape)
     np.testing.assert_array_equal(np.argwhere(found), [[4, 20], [7, 25]])
 
 
@@ -70,26 +74,81 @@ def test_what_errs_in_one_photo_is_a_transient_and_what_errs_in_all_is_not():
 def test_photos_that_agree_have_none(seed, error):
     rng = np.random.default_rng(seed)
     errors = np.full(200, error) * rng.uniform(0.8, 1.2, 200)
-    assert not transients(errors, rng.integers(0, 9, 200)).any()
+    assert not transients(errors, rng.integers(0, 9, 200), np.arange(200) % 7).any()
 
 
 def test_small_errors_are_none_however_good_the_rest_is():
     errors = np.full(50, 1e-4)
     errors[3] = 0.9 * LEAST_ERROR
-    assert not transients(errors, np.zeros(50, int)).any()
+    assert not transients(errors, np.zeros(50, int), np.arange(50)).any()
     errors[3] = 1.1 * LEAST_ERROR
-    assert np.flatnonzero(transients(errors, np.zeros(50, int))).tolist() == [3]
+    assert np.flatnonzero(transients(errors, np.zeros(50, int), np.arange(50))).tolist() == [3]
 
 
 def test_a_place_that_only_transients_show_is_found_all_the_same():
     errors = np.full(100, 0.02)
     errors[:5] = 0.3
     places = np.arange(100) // 5
-    assert np.flatnonzero(transients(errors, places)).tolist() == [0, 1, 2, 3, 4]
+    assert np.flatnonzero(transients(errors, places, np.arange(100) % 5)).tolist() == [0, 1, 2, 3, 4]
 
 
 def test_without_blocks_there_are_none():
-    assert transients(np.zeros(0), np.zeros(0, int)).shape == (0,)
+    nothing = np.zeros(0, int)
+    assert transients(np.zeros(0), nothing, nothing).shape == (0,)
+    assert evidence(np.zeros(0), nothing, nothing) == 0.0
+    assert places_of(np.zeros((0, 3)), nothing, nothing).shape == (0,)
+
+
+N_PHOTOS, N_PLACES = 20, 40
+PHOTOS, PLACES = np.indices((N_PHOTOS, N_PLACES)).reshape(2, -1)
+TOLERANCE = LeaveTransientsOut().tolerance
+
+
+def usual_errors(seed):
+    """Of photos that agree, where a fifth of the places is hard to learn; shape (N_PHOTOS, N_PLACES)."""
+    rng = np.random.default_rng(seed)
+    hard = rng.random(N_PLACES) < 0.2
+    return np.where(hard, 0.1, 0.015) * rng.lognormal(0.0, 0.4, (N_PHOTOS, N_PLACES))
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_evidence_tells_passers_by_from_what_is_hard_to_learn(seed):
+    errors, rng = usual_errors(seed), np.random.default_rng(seed)
+    assert evidence(errors.ravel(), PLACES, PHOTOS) < TOLERANCE
+    for photo in range(N_PHOTOS):
+        first = int(rng.integers(N_PLACES - 4))
+        errors[photo, first : first + 4] = rng.uniform(0.2, 0.4)
+    assert evidence(errors.ravel(), PLACES, PHOTOS) > TOLERANCE
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_a_photo_with_a_wrong_pose_is_no_evidence(seed):
+    errors = usual_errors(seed)
+    errors[7, ::3] = 0.4
+    assert transients(errors.ravel(), PLACES, PHOTOS).any()
+    assert evidence(errors.ravel(), PLACES, PHOTOS) < TOLERANCE
+
+
+def test_places_that_few_photos_show_are_no_evidence():
+    errors = usual_errors(0)
+    errors[:, :4] = np.random.default_rng(1).uniform(0.0, 0.5, (N_PHOTOS, 4))
+    own = np.where(PLACES < 4, N_PLACES + 4 * PHOTOS + PLACES, PLACES)
+    assert evidence(errors.ravel(), own, PHOTOS) < 0.5 * TOLERANCE
+
+
+@given(st.integers(6, 30), st.integers(-20, 20), st.integers(0, 2**32 - 1))
+def test_places_are_as_small_as_enough_photos_allow_in_whatever_unit(n_photos, exponent, seed):
+    rng = np.random.default_rng(seed)
+    y, x = np.mgrid[:12, :16]
+    wall = np.column_stack([x.ravel(), np.zeros(x.size), y.ravel()])
+    points = (wall[None] + rng.uniform(-0.4, 0.4, (n_photos, 1, 3))).reshape(-1, 3)
+    photos, kinds = np.repeat(np.arange(n_photos), len(wall)), (points[:, 0] > 8.0).astype(int)
+    places = places_of(points, kinds, photos)
+    n_showing = np.array([len(np.unique(photos[places == place])) for place in range(places.max() + 1)])
+    assert (n_showing[places] >= LEAST_PHOTOS).mean() >= 0.7
+    assert len(n_showing) > 20
+    assert not np.intersect1d(places[kinds == 0], places[kinds == 1]).size
+    np.testing.assert_array_equal(places, places_of(2.0**exponent * points, kinds, photos))
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
@@ -102,7 +161,11 @@ def test_rays_of_somebody_who_walked_by_are_found_in_single_and_double_precision
     errors = rng.normal(0.0, 0.05, (len(photos), 3)).astype(dtype)
     person = (photos == 5) & (np.tile(columns.ravel(), n_photos) // 16 == 1)
     errors[person] += dtype(0.25)
-    found, share = transient_blocks(blocks, of_rays, errors, np.tile(columns.ravel() // 16, n_photos))
+    wall = np.tile(np.column_stack([columns.ravel(), rows.ravel(), 0 * rows.ravel()]) / 16.0, (n_photos, 1))
+    found, share = transient_blocks(blocks, of_rays, errors, wall)
     assert found[of_rays[person]].all()
     assert set(photos[found[of_rays]]) == {5}
-    assert share == pytest.approx(0.98, abs=0.015)
+    assert share == 0.0  # one photo alone is no evidence
+    other = (photos == 8) & (np.tile(columns.ravel(), n_photos) // 16 == 2)
+    errors[other] -= dtype(0.25)
+    assert transient_blocks(blocks, of_rays, errors, wall)[1] == pytest.approx(0.49, abs=0.02)

@@ -88,7 +88,7 @@ def make(data_set, tmp_path, request):
             start.model,
             start.exposures,
             PoseCorrections(start.learned, start.model.origin_enu_m),
-            Transients([(photo.intrinsics.width_px, photo.intrinsics.height_px) for photo in start.learned], 1.0),
+            Transients([(photo.intrinsics.width_px, photo.intrinsics.height_px) for photo in start.learned]),
             photos,
             strategy,
             config,
