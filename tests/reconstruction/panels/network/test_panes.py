@@ -19,7 +19,7 @@ from planning.base.progress import QUIET
 from reconstruction.metrics.metrics import PhotoScores
 from reconstruction.metrics.overlaps import index_image, pixel_overlaps
 from reconstruction.metrics.run import own_method, score_answer
-from reconstruction.metrics.sets import ScoredPhoto, folder_set, scored
+from reconstruction.metrics.sets import ScoredPhoto, annotated_set, folder_set, scored, whole_view
 from reconstruction.panels.network import pool, training
 from reconstruction.panels.network.calibration import Source, are_there, calibrated, write_regressions
 from reconstruction.panels.network.confidence import (
@@ -40,7 +40,7 @@ from reconstruction.panels.network.sides import measured
 from reconstruction.panels.network.training import NetworkToTrain, train
 from reconstruction.panels.network.votes import STRIDE, Pane, gathered, signed_areas
 from reconstruction.panels.search.parameters import SegmentationParameters
-from reconstruction.panels.segment import segment_image
+from reconstruction.panels.segment import LEAST_SURE, SURE, other_panes, segment_image
 from reconstruction.scenes.facades.cases import random_case, wide_camera
 from reconstruction.scenes.facades.render import render_facade
 
@@ -263,6 +263,26 @@ def test_sides_without_an_edge_stay() -> None:
     assert measured([], np.full((120, 120, 3), 90, np.uint8)) == []
 
 
+SQUARE = np.array([[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]])
+
+
+@given(seed=st.integers(0, 10_000), n=st.integers(3, 6))
+def test_cells_that_are_other_panes_than_the_network_s_are_told_from_the_same_ones(seed: int, n: int) -> None:
+    rng, side = np.random.default_rng(seed), 20.0
+    places = [np.array([x, y], float) for x in range(n) for y in range(n)]
+    cells = [side * (SQUARE + place) for place in places]
+    panes = [Pane(cell + rng.uniform(-1.5, 1.5, (4, 2)), 0.9, 0.02, 1.0, confidence=0.8) for cell in cells]
+    assert other_panes(cells, panes) == 0.0
+    halves = [side * (SQUARE * [0.5, 1.0] + place + shift) for place in places for shift in ([0, 0], [0.5, 0])]
+    assert (
+        other_panes(halves, [replace(pane, corners_px=pane.corners_px + np.array([0.0, 8.0])) for pane in panes]) == 1.0
+    )
+    assert other_panes([], panes) == 1.0
+    assert other_panes(cells[n:], panes) == pytest.approx(1.0 / n)
+    assert other_panes([], [replace(pane, confidence=SURE - 0.01) for pane in panes]) == 0.0
+    assert other_panes([], panes[: LEAST_SURE - 1]) == 0.0
+
+
 GLASS = Path(__file__).parents[5] / "shared" / "data" / "glass"
 """Photos of a real curtain wall; every second one, from the second on, was not learned from."""
 
@@ -429,3 +449,12 @@ def test_changed_crops_are_finite_and_keep_their_truth() -> None:
     assert float((images - (2.0 * plain - 1.0)).abs().mean()) > 0.1
     for name in ("is_pane", "counts", "offsets", "weight"):
         assert torch.equal(getattr(truth, name), getattr(same, name))
+
+
+@pytest.mark.slow
+def test_the_network_is_on_where_lines_divide_a_wall_with_windows_into_wrong_cells(shared_data: Path) -> None:
+    photo = next(each for each in annotated_set("cmp", shared_data / "facades").photos() if "b0368" in each.name)
+    decision = segment_image(photo.image, whole_view(photo.image), SegmentationParameters()).facades[0].network
+    assert decision is not None
+    assert decision.on
+    assert "of its panes are none of them" in decision.reason
