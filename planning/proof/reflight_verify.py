@@ -332,6 +332,7 @@ class Case:
         named = [("the site", self.contents[0], of_site), ("the plan", self.contents[1], of_plan)]
         for what, content, sha256 in named + [(f"the mesh {k}", v, meshes.get(k)) for k, v in self.meshes.items()]:
             demand(hashlib.sha256(content).hexdigest() == sha256, f"{what} has changed since the proof was made", FALSE)
+        demand(set(meshes) == set(self.meshes), "the site names other meshes than the proof", FALSE)
         demand(self.plan["site_sha256"] == of_site, "the plan was made for another state of the site")
         return "site, meshes and plan are those of the proof, and the plan was made for this site"
 

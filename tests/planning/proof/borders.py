@@ -401,6 +401,7 @@ def _of_terrain(probe: Probe) -> Iterator[Any]:
         [(-3.0, 2.0, 9.0), (7.0, 2.0, 3.0)],
         [(1.0, 4.0, 9.0), (1.0, 4.0, 3.0)],
     ]
+    legs += [[(7.0, 2.0, 9.0), (7.0, 9.5, 3.0)], [(-3.0, 9.5, 9.0), (7.0, 9.5, 3.0)]]
     for a, b in legs:
         yield terrain.clearance(a, b)
     for axis, far in [(axis, far) for axis in range(2) for far in (-50.0, 50.0)]:
@@ -410,6 +411,9 @@ def _of_terrain(probe: Probe) -> Iterator[Any]:
             return probe.said(lambda: terrain.clearance(a, (*a[:axis], a[axis] + x, *a[axis + 1 :]))) == "not proved"
 
         yield border(leaves, 0.0, far)
+    spoilt = record(packed)
+    spoilt["upper"] = f"{spoilt['upper'][:8]}!{spoilt['upper'][8:]}"
+    yield probe.said(lambda: module.Terrain(spoilt).z)
     unknown = zlib.compress(struct.pack("<20i", *heights[:19], -(2**31)))
     few = zlib.compress(struct.pack("<4i", *heights[:4]))
     for packed_again, facts in (

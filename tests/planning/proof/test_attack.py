@@ -90,6 +90,17 @@ def test_a_misspelled_field_proves_nothing(name: str, old: bytes, new: bytes, tm
     assert {claim.verdict for claim in QtScript()(changed)} == {"not proved"}
 
 
+def test_a_building_that_the_site_no_longer_names_is_missed(tmp_path: Path) -> None:
+    # Found by ten thousand tamperings: the files fit again, and the proof still names the building's mesh.
+    hut, _ = kept_hut()
+    changed = sealed(
+        {**hut, "site.json": hut["site.json"].replace(b'"building_mesh": "shop.ply"', b'"building_mesh": null')}
+    )
+    claims = by_module(load(), changed, tmp_path)
+    assert {claim.id: claim.verdict for claim in claims}["files"] == "false"
+    assert same(claims, QtScript()(changed))
+
+
 def test_missions_of_a_plan_that_flies_an_unknown_view_are_false_in_both(tmp_path: Path) -> None:
     hut, _ = kept_hut()
     changed = sealed({**hut, "plan.json": hut["plan.json"].replace(b'["v0000"', b'["v9999"')})

@@ -31,6 +31,8 @@ SECONDS = 5.0
 
 EQUIVALENT: tuple[tuple[str, str, str], ...] = (
     ("> 0.0 for a, way in edges", "Gt -> GtE", "above an edge both ways give the same distance"),
+    ("is_wide = dot(normal, normal) > 1e-6", "Gt -> GtE", "a triangle of no size has no inside"),
+    ("100_000, name)", "100000 ->", "more columns than a terrain may have nodes"),
     ("max(dot(way, way), 1e-30)", "1e-30 ->", "it only keeps an edge of no length from a division by zero"),
     ("if x > 0.0 else low[0]", "Gt -> GtE", "what is chosen is multiplied by zero"),
     ("if z > 0.0 else low[2]", "Gt -> GtE", "what is chosen is multiplied by zero"),
