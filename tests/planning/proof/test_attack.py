@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
@@ -98,6 +99,17 @@ def test_a_building_that_the_site_no_longer_names_is_missed(tmp_path: Path) -> N
     )
     claims = by_module(load(), changed, tmp_path)
     assert {claim.id: claim.verdict for claim in claims}["files"] == "false"
+    assert same(claims, QtScript()(changed))
+
+
+@pytest.mark.parametrize("n_kept", [0, 1])
+def test_a_way_to_the_outside_that_is_cut_off_proves_nothing(n_kept: int, tmp_path: Path) -> None:
+    hut, _ = kept_hut()
+    proof = json.loads(hut["plan.proof"])
+    proof["outside"] = proof["outside"][:n_kept]
+    changed = {**hut, "plan.proof": json.dumps(proof).encode()}
+    claims = by_module(load(), changed, tmp_path)
+    assert {claim.id: claim.verdict for claim in claims}["distance"] == "not proved"
     assert same(claims, QtScript()(changed))
 
 
