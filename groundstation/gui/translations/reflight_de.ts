@@ -4933,8 +4933,8 @@ Blickrichtung: {3}</translation>
         <translation>Fassade, deren Raster berichtigt wird</translation>
     </message>
     <message>
-        <source>Choose a photo in the strip below.</source>
-        <translation>Wählen Sie unten im Streifen ein Foto.</translation>
+        <source>Photos are shown here once they have been read.</source>
+        <translation>Hier stehen die Fotos, sobald sie gelesen sind.</translation>
     </message>
     <message>
         <source>Facade {0}</source>
@@ -5023,8 +5023,8 @@ Blickrichtung: {3}</translation>
         <translation>Fotos rendern</translation>
     </message>
     <message>
-        <source>Photos on panels</source>
-        <translation>Fotos auf den Scheiben</translation>
+        <source>Photos on the building</source>
+        <translation>Fotos am Gebäude</translation>
     </message>
     <message>
         <source>The data set is written, photos: {0}. Train a model of it on the Reconstruct tab: {1}</source>
@@ -5164,6 +5164,18 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Folder for the coarse model</source>
         <translation>Ordner für das Grobmodell</translation>
+    </message>
+    <message>
+        <source>Of the photos of this flight, {0} of {1} were rendered into {2}, before it was cancelled.</source>
+        <translation>Von den Fotos dieses Flugs sind {0} von {1} in {2} gerendert, dann wurde abgebrochen.</translation>
+    </message>
+    <message>
+        <source>Render the photos</source>
+        <translation>Fotos rendern</translation>
+    </message>
+    <message>
+        <source>Render anew ...</source>
+        <translation>Neu rendern ...</translation>
     </message>
     <message>
         <source>Folder for the rendered photos</source>
@@ -6183,6 +6195,10 @@ Damit weiterarbeiten?</translation>
         <translation>Später entscheiden</translation>
     </message>
     <message>
+        <source>Go on</source>
+        <translation>Weitermachen</translation>
+    </message>
+    <message>
         <source>New folder:</source>
         <translation>Neuer Ordner:</translation>
     </message>
@@ -7121,8 +7137,8 @@ Damit weiterarbeiten?</translation>
         <translation>Simulierte Umgebung</translation>
     </message>
     <message>
-        <source>Photos on panels</source>
-        <translation>Fotos auf den Scheiben</translation>
+        <source>Photos on the building</source>
+        <translation>Fotos am Gebäude</translation>
     </message>
     <message>
         <source>Names</source>
@@ -8125,6 +8141,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>höchstens {0} länger als die kürzeste</translation>
     </message>
     <message>
+        <source>at the edges of panes mirror images are {0} px from where flat ones would show them</source>
+        <translation>an den Rändern der Scheiben liegen Spiegelbilder {0} px neben denen ebener Scheiben</translation>
+    </message>
+    <message>
         <source>at the shutter (median / worst): {0}</source>
         <translation>beim Auslösen (Median / schlechteste): {0}</translation>
     </message>
@@ -8183,6 +8203,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>bodies of the site take so much sun from a pane on this day</source>
         <translation>so viel Sonne nehmen Körper des Standorts einer Scheibe an diesem Tag</translation>
+    </message>
+    <message>
+        <source>bows of panes</source>
+        <translation>Wölbung der Scheiben</translation>
     </message>
     <message>
         <source>browsers with WebGPU show panes that mirror as in the model, others these colours</source>
@@ -8385,8 +8409,12 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>dichte Tiefen</translation>
     </message>
     <message>
+        <source>depth of field</source>
+        <translation>Schärfentiefe</translation>
+    </message>
+    <message>
         <source>describes a video as &apos;{0}&apos;; expected one of {1} to a port</source>
-        <translation>beschreibt ein Video als '{0}'; erwartet wird eines von {1} an einen Port</translation>
+        <translation>beschreibt ein Video als &apos;{0}&apos;; erwartet wird eines von {1} an einen Port</translation>
     </message>
     <message>
         <source>describes no video by RTP</source>
@@ -9360,7 +9388,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>has a parameter without a name that MAVLink can carry: &apos;{0}&apos;</source>
-        <translation>hat einen Parameter ohne einen Namen, den MAVLink übertragen kann: '{0}'</translation>
+        <translation>hat einen Parameter ohne einen Namen, den MAVLink übertragen kann: &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>has changed since it was added on {0}; look at it, and add it again</source>
@@ -10272,7 +10300,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>names the parameter &apos;{0}&apos; twice</source>
-        <translation>nennt den Parameter '{0}' zweimal</translation>
+        <translation>nennt den Parameter &apos;{0}&apos; zweimal</translation>
     </message>
     <message>
         <source>names {0} parameters; expected at most {1}</source>
@@ -10309,6 +10337,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>no Vulkan, Metal or Direct3D 12 driver answers (on Debian or Ubuntu: {0})</source>
         <translation>kein Treiber für Vulkan, Metal oder Direct3D 12 antwortet (auf Debian oder Ubuntu: {0})</translation>
+    </message>
+    <message>
+        <source>no aperture is stated, so all is in focus</source>
+        <translation>keine Blende ist angegeben, also ist alles scharf</translation>
     </message>
     <message>
         <source>no building in this file has windows; {0}</source>
@@ -10759,6 +10791,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Scheiben: {0}</translation>
     </message>
     <message>
+        <source>panes are out of focus by {0} px, mirror images by {1} px</source>
+        <translation>Scheiben sind um {0} px unscharf, Spiegelbilder um {1} px</translation>
+    </message>
+    <message>
         <source>panes out of focus ({0})</source>
         <translation>Scheiben unscharf ({0})</translation>
     </message>
@@ -11180,7 +11216,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>set on the camera: &apos;{0}&apos; to {1}, {2}</source>
-        <translation>auf der Kamera gesetzt: '{0}' auf {1}, {2}</translation>
+        <translation>auf der Kamera gesetzt: &apos;{0}&apos; auf {1}, {2}</translation>
     </message>
     <message>
         <source>setting</source>
@@ -12347,6 +12383,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>diese Quelle ist {0} Tage alt, und Zonen ändern sich jeden Monat: den heutigen Stand nehmen und erneut hinzufügen</translation>
     </message>
     <message>
+        <source>through a pupil of {0} mm, what is seen is out of focus by {1} px, what is mirrored by {2} px</source>
+        <translation>durch eine Pupille von {0} mm ist Gesehenes um {1} px unscharf, Gespiegeltes um {2} px</translation>
+    </message>
+    <message>
         <source>time goes back in the log, by {0} s at most; what it says was put in order</source>
         <translation>im Log geht die Zeit zurück, um höchstens {0} s; was es sagt, wurde geordnet</translation>
     </message>
@@ -12479,12 +12519,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>was nur einzelne Fotos zeigen</translation>
     </message>
     <message>
+        <source>what splats learned in the {0} steps before was lost with it</source>
+        <translation>was die Splats in den {0} Schritten davor gelernt haben, ging damit verloren</translation>
+    </message>
+    <message>
         <source>when it is active is not read: it counts all the time</source>
         <translation>wann sie aktiv ist, wird nicht gelesen: sie zählt immer</translation>
     </message>
     <message>
         <source>wind, from any side</source>
         <translation>Wind, von jeder Seite</translation>
+    </message>
+    <message>
+        <source>windows of photos have {0} pixels, because only {1} steps with {2} would fit into the time</source>
+        <translation>Ausschnitte der Fotos haben {0} Pixel, weil in die Zeit nur {1} Schritte mit {2} passen würden</translation>
     </message>
     <message>
         <source>with take-off then, the sun or its mirror image is in {0} of {1} photos, {2} show uneven light, the pilot is blinded for {3} s</source>
@@ -14308,11 +14356,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>&apos;{0}&apos; has a range that is none</source>
-        <translation>'{0}' hat einen Bereich, der keiner ist</translation>
+        <translation>&apos;{0}&apos; hat einen Bereich, der keiner ist</translation>
     </message>
     <message>
         <source>&apos;{0}&apos; has an option that is no number</source>
-        <translation>'{0}' hat einen Auswahlwert, der keine Zahl ist</translation>
+        <translation>&apos;{0}&apos; hat einen Auswahlwert, der keine Zahl ist</translation>
     </message>
     <message>
         <source>&apos;{0}&apos; has decimals before its last part</source>
@@ -14320,11 +14368,11 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>&apos;{0}&apos; has the type &apos;{1}&apos;, which MAVLink does not know</source>
-        <translation>'{0}' hat den Typ '{1}', den MAVLink nicht kennt</translation>
+        <translation>&apos;{0}&apos; hat den Typ &apos;{1}&apos;, den MAVLink nicht kennt</translation>
     </message>
     <message>
         <source>&apos;{0}&apos; has {1} options; expected at most {2}</source>
-        <translation>'{0}' hat {1} Auswahlwerte; erwartet werden höchstens {2}</translation>
+        <translation>&apos;{0}&apos; hat {1} Auswahlwerte; erwartet werden höchstens {2}</translation>
     </message>
     <message>
         <source>&apos;{0}&apos; is no band of UTM; bands are C to X without I and O</source>
@@ -14336,7 +14384,7 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     </message>
     <message>
         <source>&apos;{0}&apos; of the camera cannot be set so: {1}</source>
-        <translation>'{0}' der Kamera lässt sich nicht so einstellen: {1}</translation>
+        <translation>&apos;{0}&apos; der Kamera lässt sich nicht so einstellen: {1}</translation>
     </message>
     <message>
         <source>, {0} dB on facades of {1}</source>
