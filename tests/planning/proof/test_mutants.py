@@ -46,11 +46,8 @@ EQUIVALENT: tuple[tuple[str, str, str], ...] = (
 """Mutants that say the same of everything: a part of their line, the start of their change, and why."""
 
 N_PARTS = 8
-SHARE_KILLED = 0.65
-"""Of all mutants; 0.71 of one in thirty were told. Of the others some change nothing, or limits that no flight comes
-near; some want probes that are not there yet: jerk-free ramps, speeds up and down, cones of the gimbal, missions above
-the ellipsoid.
-"""
+SHARE_KILLED = 0.8
+"""Of all that are not listed as equivalent; of 250 in reading and geometry 0.97 were told, of 20 elsewhere 0.9."""
 
 
 class HangsError(Exception):
