@@ -11939,6 +11939,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Netz sieht auf {0} % von {1} Scheiben kein Glas, und {2} % seines Glases liegen außerhalb davon</translation>
     </message>
     <message>
+        <source>the network sees no glass on {0} % of {1} panels, and {2} % of its panes are none of them</source>
+        <translation>das Netz sieht auf {0} % von {1} Scheiben kein Glas, und {2} % seiner Scheiben sind keine davon</translation>
+    </message>
+    <message>
         <source>the northing {0} m does not lie in band {1}</source>
         <translation>der Nordwert {0} m liegt nicht im Band {1}</translation>
     </message>
