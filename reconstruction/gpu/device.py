@@ -241,7 +241,9 @@ class Device:
 
     def table(self, texels: int, kind: Literal["rgba32float", "rgba32uint"] = "rgba32float") -> Piece:
         """A texture of as many texels or more, row by row, filled with anything."""
-        rows = _rounded(-(-max(texels, 1) // TEXELS_A_ROW), 1)
+        rows = -(-max(texels, 1) // TEXELS_A_ROW)
+        # Programs compile a kernel anew for each mix of heights that are powers of 2 and those that are none.
+        rows = 1 << (rows - 1).bit_length() if self.adapter.is_software else _rounded(rows, 1)
         rows = min(rows, TEXELS_A_ROW)
         if texels > rows * TEXELS_A_ROW:
             raise ValueError(f"a table of {texels} texels: the device has {self.most_texels} at most")

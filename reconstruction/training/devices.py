@@ -173,7 +173,7 @@ def _tried(config: TrainConfig, splats: Splats, view: View) -> CardTrial:
         first_s, found = _step(splats, window, replace(settings, on_gpu=True))
         there_s = _step(splats, window, replace(settings, on_gpu=True))[0]
         if fits_card(splats):
-            here_s, there_s = (_learning_s(splats, window, settings, on_card) for on_card in (False, True))
+            here_s, there_s = (learning_s(splats, window, settings, on_card) for on_card in (False, True))
     except ReconstructionError as error:
         if config.device == "gpu":
             raise
@@ -255,7 +255,7 @@ def try_card() -> None:
     raster.features.sum().backward()  # type: ignore[no-untyped-call]
     half = torch.full((2,), 0.5)
     splats = Splats.of(means.detach(), quats, torch.full((2, 2), 0.3), half, half[:, None].expand(2, 3))
-    _learning_s(splats, view, settings, True)
+    learning_s(splats, view, settings, True)
 
 
 def _step(splats: Splats, view: View, settings: RasterSettings) -> tuple[float, list[Tensor]]:
@@ -272,7 +272,7 @@ def _step(splats: Splats, view: View, settings: RasterSettings) -> tuple[float, 
     return seconds, [raster.features.detach(), *gradients]
 
 
-def _learning_s(splats: Splats, view: View, settings: RasterSettings, on_card: bool) -> float:
+def learning_s(splats: Splats, view: View, settings: RasterSettings, on_card: bool) -> float:
     """Seconds of what a step does with splats, from what is learned of them to what has been: the second of two."""
     own = splats.some(torch.arange(len(splats)))
     optimiser = torch.optim.AdamW(

@@ -64,7 +64,7 @@ def test_programs_in_the_place_of_a_card_are_not_chosen_by_themselves(
 
 def test_a_card_is_tried_and_the_reason_says_how_it_did(splats: Splats, monkeypatch: pytest.MonkeyPatch) -> None:
     times = {False: iter([0.5, 0.3]), True: iter([2.0, 0.01])}
-    monkeypatch.setattr(devices, "_learning_s", lambda *given: 0.05 if given[3] else 0.2)
+    monkeypatch.setattr(devices, "learning_s", lambda *given: 0.05 if given[3] else 0.2)
     monkeypatch.setattr(devices, "why_no_gpu", str)
     monkeypatch.setattr(devices, "adapters", lambda: (CARD,))
     monkeypatch.setattr(devices, "_survives", lambda: True)
