@@ -312,7 +312,7 @@ def _distances(case: Case, sorties: Sequence[SortieOutcome]) -> Iterator[Finding
         subject = say("smallest distance flown, {:.1f} s after the start", outcome.least_distance_time_s)
         advice = say("see where, and keep further away")
         judged = subject, outcome.least_distance_m, limit, "m", _place(outcome), advice, severity
-        yield judge(short_m <= 0.0, "distance", *judged, least=True)
+        yield judge(short_m <= RECORDED_M, "distance", *judged, least=True)
 
 
 def _heights(case: Case, sorties: Sequence[SortieOutcome]) -> Iterator[Finding]:
@@ -334,8 +334,11 @@ def _heights(case: Case, sorties: Sequence[SortieOutcome]) -> Iterator[Finding]:
         subject = say("smallest height above {}, {:.1f} s after the start", over, outcome.least_height_time_s)
         advice = say("see where, and fly higher")
         judged = subject, outcome.least_height_m, limit, "m", _place(outcome), advice, severity
-        yield judge(short_m <= 0.0, "height", *judged, least=True)
+        yield judge(short_m <= RECORDED_M, "height", *judged, least=True)
 
+
+RECORDED_M = 0.01
+"""Records tell places no finer than that: plans go right up to a limit, and flights along it miss it by less."""
 
 HEIGHT_TOLERANCE_M = 2.0
 """Barometers and GNSS wander by this much in height during a flight."""

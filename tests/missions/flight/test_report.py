@@ -484,7 +484,13 @@ def test_the_report_says_how_low_was_flown_above_what_and_judges_it() -> None:
     assert found.severity is Severity.ERROR
     assert "smallest height above the terrain" in found.message
     assert found.value == pytest.approx(1.0, abs=0.01)
-    # What barometers wander by is a warning.
+    # Less than records tell is no finding, and what barometers wander by is a warning.
+    (record,) = flown()
+    for sunk_m, severity in ((0.0005, Severity.OK), (0.02, Severity.WARNING)):
+        places = record.track.position_enu_m - np.array([0.0, 0.0, sunk_m])
+        sunk = report_case(case(), (replace(record, track=replace(record.track, position_enu_m=places)),))
+        (found,) = [finding for finding in sunk.findings if finding.code == "height"]
+        assert found.severity is severity
     near = report_case(over(lambda x, y: np.where(y < -7.0, 1.0, 0.0)), flown())
     (found,) = [finding for finding in near.findings if finding.code == "height"]
     assert found.severity is Severity.WARNING
