@@ -20,7 +20,7 @@ from planning.base.json_file import (
     to_record,
     write_atomically,
 )
-from planning.geo.mesh import TriangleMesh, empty_mesh, read_mesh
+from planning.geo.mesh import TriangleMesh, empty_mesh, ply_bytes, read_mesh
 from planning.site.records import SITE_FORMAT, Obstacle, Site, SiteModel, box_geometry
 from planning.site.zones.keep_out import read_site_zones
 from planning.site.zones.records import ZoneFile
@@ -115,6 +115,29 @@ def zones_beside(model: SiteModel) -> tuple[Site, dict[str, bytes]]:
         if each.content:
             files[name] = each.content
     return replace(model.site, zones=tuple(sources.get(each, each) for each in model.site.zones)), files
+
+
+def site_with_files(model: SiteModel, prefix: str = "") -> tuple[Site, dict[str, bytes]]:
+    """A site as the first of a set of files of its own, and the others by name: meshes and geo-zones as they are open.
+
+    Parameters
+    ----------
+    prefix
+        Names of the files begin with it.
+    """
+    site, zones = zones_beside(model)
+    files = {f"{prefix}{name}": content for name, content in zones.items()}
+    building = None if site.building_mesh is None else f"{prefix}building.ply"
+    if building is not None:
+        files[building] = ply_bytes(model.building)
+    obstacles = []
+    for number, (obstacle, mesh) in enumerate(zip(site.obstacles, model.obstacles, strict=True), 1):
+        if obstacle.mesh is not None:
+            obstacle = replace(obstacle, mesh=f"{prefix}obstacle-{number}.ply")
+            files[f"{prefix}obstacle-{number}.ply"] = ply_bytes(mesh)
+        obstacles.append(obstacle)
+    named = tuple(replace(each, file=f"{prefix}{each.file}") for each in site.zones)
+    return replace(site, building_mesh=building, obstacles=tuple(obstacles), zones=named), files
 
 
 def is_planned_on(planned_sha256: str, model: SiteModel) -> bool:

@@ -19,11 +19,11 @@ from planning.base.json_file import JSON_FILE, parse_json, write_atomically
 from planning.base.messages import joined, say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.coverage.reachability import Reachability, find_reachable
-from planning.geo.mesh import MESH_FILE, write_mesh
+from planning.geo.mesh import MESH_FILE
 from planning.plan import Plan, plan_bytes, write_plan
 from planning.proof import reflight_verify
 from planning.proof.make import proof_of, proof_path
-from planning.site.file import write_site, zones_beside
+from planning.site.file import site_with_files, write_site
 from planning.site.free_space import free_space
 from planning.site.records import SiteModel
 from planning.viewpoints.prepare import coverage_model
@@ -119,21 +119,11 @@ def proved_as_saved(
 
 def _write_open(plan: Plan, site_model: SiteModel, folder: Path, prefix: str) -> tuple[Path, Path]:
     """Write an open plan and its site with all that it names, as a set of files of its own: paths of site and plan."""
-    site, zones = zones_beside(site_model)
-    site = replace(site, zones=tuple(replace(each, file=f"{prefix}{each.file}") for each in site.zones))
-    for name, content in zones.items():
-        write_atomically(folder / f"{prefix}{name}", content)
-    meshes = [(site.building_mesh, site_model.building)]
-    meshes += [(each.mesh, mesh) for each, mesh in zip(site.obstacles, site_model.obstacles, strict=True)]
-    stored = {mesh: f"{prefix}mesh-{number}.ply" for number, (mesh, _) in enumerate(meshes) if mesh is not None}
-    for mesh, geometry in meshes:
-        if mesh is not None:
-            write_mesh(folder / stored[mesh], geometry)
-    obstacles = tuple(replace(each, mesh=each.mesh and stored[each.mesh]) for each in site.obstacles)
-    building = None if site.building_mesh is None else stored[site.building_mesh]
+    site, files = site_with_files(site_model, prefix)
+    for name, content in files.items():
+        write_atomically(folder / name, content)
     site_path, plan_path = folder / f"{prefix}site.json", folder / f"{prefix}plan.json"
-    sha256 = write_site(site_path, replace(site, building_mesh=building, obstacles=obstacles))
-    write_plan(plan_path, replace(plan, site_sha256=sha256))
+    write_plan(plan_path, replace(plan, site_sha256=write_site(site_path, site)))
     return site_path, plan_path
 
 

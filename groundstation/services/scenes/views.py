@@ -20,11 +20,10 @@ from planning.base.findings import Finding, Severity
 from planning.base.json_file import plain_values
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
-from planning.geo.mesh import ply_bytes
 from planning.parameters import Constraints, GreedyParameters
 from planning.plan import Camera, Plan, Viewpoint, plan_to_json, read_plan
 from planning.request import PlanRequest
-from planning.site.file import is_planned_on, site_bytes, site_sha256, zones_beside
+from planning.site.file import is_planned_on, site_bytes, site_sha256, site_with_files
 from planning.site.records import SiteModel
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.scenes.parameters import DEFAULT_VIEWS, SceneRequest
@@ -174,17 +173,7 @@ def scene_of_request(request: SceneRequest) -> tuple[Scene, dict[str, Any]]:
 
 def as_written(model: SiteModel) -> tuple[SiteModel, dict[str, bytes]]:
     """A scene's site as it is written beside the photos, and the content of its files."""
-    site, files = zones_beside(model)
-    if site.building_mesh is not None:
-        site = replace(site, building_mesh="building.ply")
-        files["building.ply"] = ply_bytes(model.building)
-    obstacles = []
-    for number, (obstacle, mesh) in enumerate(zip(site.obstacles, model.obstacles, strict=True), 1):
-        if obstacle.mesh is not None:
-            obstacle = replace(obstacle, mesh=f"obstacle-{number}.ply")
-            files[f"obstacle-{number}.ply"] = ply_bytes(mesh)
-        obstacles.append(obstacle)
-    site = replace(site, obstacles=tuple(obstacles))
+    site, files = site_with_files(model)
     sources = dict(zip(model.site.zones, site.zones, strict=True))
     zones = tuple(replace(each, source=sources.get(each.source, each.source)) for each in model.zones)
     return replace(model, site=site, zones=zones, sha256=site_sha256(site)), {SITE_FILE: site_bytes(site), **files}
