@@ -26,6 +26,7 @@ from torch import Tensor
 from planning.base.effects import Assessment, Decision, EffectSetting, decide
 from planning.base.errors import InputError, ReconstructionError
 from planning.base.messages import say
+from reconstruction.base.adam import Adam
 from reconstruction.gpu.device import adapters, open_device, why_no_gpu
 from reconstruction.metrics.image_metrics import psnr_db
 from reconstruction.splats.card_splats import OTHER_FEATURES, RATED, AdamStep, CardSplats, fits_card
@@ -275,9 +276,7 @@ def _step(splats: Splats, view: View, settings: RasterSettings) -> tuple[float, 
 def learning_s(splats: Splats, view: View, settings: RasterSettings, on_card: bool) -> float:
     """Seconds of what a step does with splats, from what is learned of them to what has been: the second of two."""
     own = splats.some(torch.arange(len(splats)))
-    optimiser = torch.optim.AdamW(
-        [{"name": name, "params": [getattr(own, name)]} for name in own.names], lr=0.0, weight_decay=0.0, fused=True
-    )
+    optimiser = Adam([{"name": name, "params": [getattr(own, name)]} for name in own.names], lr=0.0)
     shape = view.height_px, view.width_px
     pull = torch.rand((*shape, 4 * OTHER_FEATURES + 4), generator=torch.Generator().manual_seed(0))
     rates = dict.fromkeys((*RATED, "details"), 0.0)
