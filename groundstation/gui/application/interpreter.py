@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import _imp
 import contextlib
 import gc
 import importlib
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
@@ -17,8 +18,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 #
 # Left to itself it runs on whatever thread makes the next object. On the thread of a job it would free widgets there,
 # which Qt does not survive, and it would hold the interpreter's lock for as long as the search takes: a tenth of a
-# second
-# and more once the numerical libraries are loaded.
+# second and more once the numerical libraries are loaded.
 
 INTERVAL_MS = 1000
 
@@ -97,6 +97,21 @@ BUSY_S, REST_S, MOST_RESTS = 0.03, 0.005, 20
 long as the window is busy, and no more often than so: a page was made in 100 ms instead of 220 ms beside it."""
 
 
+@contextlib.contextmanager
+def _lock_of_imports_let_go() -> Iterator[None]:
+    """Python asks where a module is under one lock for all threads: let others import meanwhile."""
+    try:
+        _imp.release_lock()
+    except RuntimeError:
+        # Asked by somebody else than Python's own import, who holds nothing.
+        yield
+        return
+    try:
+        yield
+    finally:
+        _imp.acquire_lock()
+
+
 class _GiveWay:
     """Asked by Python for each module that it imports; finds none, and rests on the one thread while others are busy.
 
@@ -111,11 +126,12 @@ class _GiveWay:
 
     def find_spec(self, _name: str, _path: object = None, _target: object = None) -> None:
         """Nothing: those that come after find it."""
-        if threading.get_ident() == self._thread:
-            for _ in range(MOST_RESTS):
-                if not self._is_busy():
-                    break
-                time.sleep(REST_S)
+        if threading.get_ident() == self._thread and self._is_busy():
+            with _lock_of_imports_let_go():
+                for _ in range(MOST_RESTS):
+                    time.sleep(REST_S)
+                    if not self._is_busy():
+                        break
 
 
 def _waits_for_import(thread: int) -> bool:

@@ -1,7 +1,11 @@
 """Modules are imported on another thread, which rests while the window is busy."""
 
+import contextlib
+import importlib
 import sys
 import threading
+
+import pytest
 
 from groundstation.gui.application import interpreter
 from groundstation.gui.application.interpreter import MOST_RESTS, BackgroundImport, _GiveWay
@@ -39,35 +43,58 @@ def test_all_modules_are_told_of_in_order_and_python_searches_as_before(applicat
     assert sys.meta_path == before
 
 
-def test_a_window_that_waits_for_a_module_is_not_made_to_wait_longer():
-    held, waiting = threading.Event(), threading.Event()
-    module = "a_module_that_takes_long"
+def test_others_import_while_the_thread_rests():
+    """Python asks for modules under one lock: resting with it would hold up whatever the window imports."""
+    done = threading.Event()
+    rested = []
 
-    class Slow:
-        def find_spec(self, name, _path=None, _target=None):
-            if name == module:
-                waiting.set()
-                held.wait(20.0)
+    def others_import():
+        if not rested:
+            rested.append(True)
+            threading.Thread(target=lambda: (_import("no_such_module_for_others"), done.set())).start()
+        return not done.is_set()
 
-    slow = Slow()
-    sys.meta_path.insert(0, slow)
-    try:
-        threads = [threading.Thread(target=_import, args=(module,)) for _ in range(2)]
-        for thread in threads:
-            thread.start()
-            waiting.wait(20.0)
-        while not interpreter._waits_for_import(threads[1].ident):
-            assert threads[1].is_alive()
-        assert not interpreter._waits_for_import(threading.get_ident())
-    finally:
-        held.set()
-        sys.meta_path.remove(slow)
-        for thread in threads:
-            thread.join()
+    def work():
+        gives_way = _GiveWay(others_import)
+        sys.meta_path.insert(0, gives_way)
+        _import("no_such_module_for_the_thread")
+        sys.meta_path.remove(gives_way)
+        rested.append(done.is_set())
+
+    importing = threading.Thread(target=work)
+    importing.start()
+    importing.join()
+    assert rested == [True, True]
+
+
+def test_a_window_that_waits_for_a_module_is_not_made_to_wait_longer(modules_that_wait):
+    module, running, held = modules_that_wait
+    threads = [threading.Thread(target=_import, args=(module,)) for _ in range(2)]
+    threads[0].start()
+    assert running.wait(20.0)
+    threads[1].start()
+    while not interpreter._waits_for_import(threads[1].ident):
+        assert threads[1].is_alive()
+    assert not interpreter._waits_for_import(threading.get_ident())
+    held.set()
+    for thread in threads:
+        thread.join()
+
+
+@pytest.fixture
+def modules_that_wait(tmp_path, monkeypatch):
+    """A module that, while it is imported, says so and waits until it is let go: its name and the two events."""
+    name = "a_module_that_takes_long"
+    running, held = threading.Event(), threading.Event()
+    (tmp_path / f"{name}.py").write_text("import sys\nsys.running.set()\nsys.held.wait(60.0)\n", encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "running", running, raising=False)
+    monkeypatch.setattr(sys, "held", held, raising=False)
+    yield name, running, held
+    held.set()
+    sys.modules.pop(name, None)
 
 
 def _import(name):
-    try:
-        __import__(name)
-    except ImportError:
-        return
+    with contextlib.suppress(ImportError):
+        importlib.import_module(name)
