@@ -21,7 +21,6 @@ from planning.site.zones.arcs import arc_corners
 from planning.site.zones.fields import quoted
 from planning.site.zones.geojson import MAX_RADIUS_M, POINT_WIDTH_M, ring
 from planning.site.zones.heights import EVERYWHERE_BELOW, FOOT_M, NAUTICAL_MILE_M, limit
-from planning.site.zones.openair import restriction
 from planning.site.zones.records import (
     ALWAYS,
     FROM_GROUND,
@@ -35,6 +34,7 @@ from planning.site.zones.records import (
     Volume,
     Zone,
     ZoneSet,
+    airspace_restriction,
 )
 from planning.site.zones.times import moment
 
@@ -131,7 +131,7 @@ def _zone(one: Element, airspace: Element, known: Mapping[str, Element], changes
     return Zone(
         id=_text(one, "designator") or _text(airspace, "identifier") or name,
         name=name,
-        restriction=restriction(kinds, questions),
+        restriction=airspace_restriction(kinds, questions),
         written_type=" ".join(filter(None, (written, *classes))),
         volumes=tuple(volumes),
         periods=_periods(one),

@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from planning.base.messages import say
-from planning.site.zones.ed318 import authorities, period_of, restriction_of
-from planning.site.zones.fields import Fields
+from planning.site.zones.fields import Fields, authorities, period_of, restriction_of
 from planning.site.zones.geojson import circle, outlines
 from planning.site.zones.heights import EVERYWHERE_BELOW, limit
 from planning.site.zones.records import ALWAYS, UNLIMITED, Circle, Limit, Outline, Period, Volume, Zone, ZoneSet

@@ -26,10 +26,10 @@ from planning.site.zones.records import (
     LonLat,
     Outline,
     Period,
-    Restriction,
     Volume,
     Zone,
     ZoneSet,
+    airspace_restriction,
 )
 from planning.site.zones.times import moment
 
@@ -37,15 +37,6 @@ MAX_LINES = 2_000_000
 """Of a file of the whole world."""
 
 MAX_RADIUS_NM = 2000.0
-
-PROHIBITED = frozenset({"P"})
-CONTROLLED = frozenset({"A", "B", "C", "D", "CTR", "CTA", "TMA", "ATZ", "MATZ", "HTZ", "TIZ", "TIA", "LTA", "UTA"})
-RESERVED = frozenset({"R", "RESTRICTED", "TRA", "TSA", "TFR", "MTA", "MTR", "OFR", "N"})
-"""Where others decide who flies: classes A to D need a clearance (ICAO Annex 11, appendix 4)."""
-
-INFORMED = frozenset({"E", "F", "G", "UNC", "UNCLASSIFIED", "RMZ", "TMZ", "TRZ", "AWY", "FIR", "UIR", "FIS", "ACCSEC"})
-WATCHED = frozenset({"Q", "DANGER", "ALERT", "WARNING", "W", "GP", "GSEC", "ADIZ", "ASRA", "VFRR", "VFRSEC", "TRAFR"})
-"""Where it depends on the country what holds for unmanned aircraft: the pilot is asked."""
 
 _POINT = re.compile(
     r"(\d{1,3})[:°](\d{1,2}(?:\.\d+)?)(?:[:'](\d{1,2}(?:\.\d+)?))?\s*\"?\s*([NS])[\s,]*"
@@ -235,26 +226,13 @@ def _zone(airspace: _Airspace, unnamed: str) -> Zone:
     return Zone(
         id=name,
         name=name,
-        restriction=restriction(kinds, questions),
+        restriction=airspace_restriction(kinds, questions),
         written_type=" ".join(reversed(kinds)),
         volumes=tuple(volumes),
         periods=_periods(airspace.times, questions),
         questions=tuple(questions),
         place_questions=tuple(places),
     )
-
-
-def restriction(kinds: list[str], questions: list[str]) -> Restriction:
-    """What classes and types ask of a flight: the strictest of them."""
-    if PROHIBITED & set(kinds):
-        return Restriction.PROHIBITED
-    if (CONTROLLED | RESERVED) & set(kinds):
-        return Restriction.AUTHORISATION
-    written = " ".join(kinds)
-    questions.append(
-        say("what airspace '{}' means for unmanned aircraft is national law: ask what holds here", written)
-    )
-    return Restriction.CONDITIONAL if kinds and set(kinds) <= INFORMED | WATCHED else Restriction.UNKNOWN
 
 
 def _limit(text: str | None, questions: list[str], *, is_lower: bool) -> Limit:

@@ -39,6 +39,29 @@ RESTRICTIONS = {
 """In words."""
 
 
+_PROHIBITED = frozenset({"P"})
+_CONTROLLED = frozenset({"A", "B", "C", "D", "CTR", "CTA", "TMA", "ATZ", "MATZ", "HTZ", "TIZ", "TIA", "LTA", "UTA"})
+_RESERVED = frozenset({"R", "RESTRICTED", "TRA", "TSA", "TFR", "MTA", "MTR", "OFR", "N"})
+"""Where others decide who flies: classes A to D need a clearance (ICAO Annex 11, appendix 4)."""
+
+_INFORMED = frozenset({"E", "F", "G", "UNC", "UNCLASSIFIED", "RMZ", "TMZ", "TRZ", "AWY", "FIR", "UIR", "FIS", "ACCSEC"})
+_WATCHED = frozenset({"Q", "DANGER", "ALERT", "WARNING", "W", "GP", "GSEC", "ADIZ", "ASRA", "VFRR", "VFRSEC", "TRAFR"})
+"""Where it depends on the country what holds for unmanned aircraft: the pilot is asked."""
+
+
+def airspace_restriction(kinds: list[str], questions: list[str]) -> Restriction:
+    """What classes and types ask of a flight: the strictest of them."""
+    if _PROHIBITED & set(kinds):
+        return Restriction.PROHIBITED
+    if (_CONTROLLED | _RESERVED) & set(kinds):
+        return Restriction.AUTHORISATION
+    written = " ".join(kinds)
+    questions.append(
+        say("what airspace '{}' means for unmanned aircraft is national law: ask what holds here", written)
+    )
+    return Restriction.CONDITIONAL if kinds and set(kinds) <= _INFORMED | _WATCHED else Restriction.UNKNOWN
+
+
 class HeightAbove(StrEnum):
     """What a limit of a zone is counted from."""
 
