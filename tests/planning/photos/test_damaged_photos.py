@@ -10,8 +10,7 @@ import pytest
 
 from planning.base.errors import InputError
 from planning.photos.exif import Tag, read_exif
-from planning.photos.metadata import read_photo
-from planning.photos.xmp import MAX_PROPERTIES, read_xmp
+from planning.photos.metadata import MAX_PROPERTIES, read_photo, read_xmp
 from reconstruction.photos.decode import picture_size
 from tests.planning.photos.photo_writer import exif_part, extended_segments, gps_tags, jpeg, packet, save
 from tests.slow import slow
