@@ -28,7 +28,7 @@ from groundstation.gui.reconstruct.model_view import (
     ModelView,
     flight,
 )
-from groundstation.gui.reconstruct.progress_page import ProgressPage
+from groundstation.gui.reconstruct.reconstruct_page import ProgressPage
 from groundstation.gui.reconstruct.view_pictures import image_of, layer_names
 from groundstation.gui.widgets.photo_strip import SIDE_PX, Thumbnails
 from groundstation.services.reconstruct.choices import TrainChoice
