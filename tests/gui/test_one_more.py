@@ -49,7 +49,7 @@ def voxels(monkeypatch):
 
 
 def test_a_format_is_offered_by_command_window_and_docs_and_in_messages(voxels, application, tmp_path):
-    from groundstation.gui.model.export_dialog import ExportDialog
+    from groundstation.gui.model.model_page import ExportDialog
     from tests.docs.generated import with_formats
 
     _, parser, told = described("export", "export")

@@ -114,7 +114,7 @@ def test_the_lists_of_the_window_have_what_plug_ins_add(installed):
 from PySide6.QtWidgets import QApplication
 application = QApplication([])
 from groundstation.gui.mission.export_dialog import ExportForm
-from groundstation.gui.model.export_dialog import ExportDialog
+from groundstation.gui.model.model_page import ExportDialog
 from groundstation.gui.plan.plan_form import AircraftBox
 from groundstation.services.reconstruct.choices import method_rows
 from groundstation.services.units import UnitSystem

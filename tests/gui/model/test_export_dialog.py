@@ -2,7 +2,7 @@
 
 import pytest
 
-from groundstation.gui.model.export_dialog import ExportDialog
+from groundstation.gui.model.model_page import ExportDialog
 from groundstation.services.model.export import EXPORTERS, ModelExport, with_ending
 from tests.gui.driving import choose, clicked, escape, press, shut, turn_until
 from tests.reconstruction.exports.spz.reading import read_spz
