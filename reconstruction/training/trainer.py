@@ -24,6 +24,7 @@ from planning.base.errors import OperationCancelled
 from planning.base.messages import say
 from reconstruction.base.out_of_memory import NotFinite, is_out_of_memory, require_finite
 from reconstruction.gpu.device import DeviceFailed, open_device
+from reconstruction.light.losses import no_brighter
 from reconstruction.splats.densification.adaptive import AdaptiveControl, AdaptiveParameters
 from reconstruction.splats.densification.mcmc import MarkovChain, McmcParameters
 from reconstruction.splats.densification.strategy import Densification, FixedNumber, Limits
@@ -38,9 +39,16 @@ from reconstruction.training.callbacks import (
     quality_db,
 )
 from reconstruction.training.card_step import CardGradients, CardStep, fits_card_step
-from reconstruction.training.config import TrainConfig
+from reconstruction.training.config import LossWeights, TrainConfig
+from reconstruction.training.losses import (
+    colour_loss,
+    normal_consistency,
+    normal_prior,
+    normal_smoothness,
+    surface_normals,
+    worst_pixels,
+)
 from reconstruction.training.model.joint_model import Picture, SceneModel
-from reconstruction.training.objective import objective, on_device
 from reconstruction.training.photos.exposures import Exposures
 from reconstruction.training.photos.photo_stream import PhotoStream, Sample
 from reconstruction.training.photos.poses import PoseCorrections
@@ -48,6 +56,65 @@ from reconstruction.training.photos.transients import Transients
 from reconstruction.training.ranks import ALONE, Ranks
 from reconstruction.training.timer import Timer
 from reconstruction.training.training_state import TrainingState, set_rates, take_step, write_checkpoint
+
+
+def objective(
+    picture: Picture, sample: Sample, weights: LossWeights, progress: float, with_glass: bool
+) -> tuple[Tensor, dict[str, float]]:
+    """The loss, and what each weighted term adds to it.
+
+    Parameters
+    ----------
+    progress
+        Of the training, 0 to 1.
+    with_glass
+        Whether the terms that the paper adds for glass count, too (Eqs. 23 and 24).
+    """
+    truth = display_of(sample)
+    found, facade = picture.display, sample.facade
+    if sample.shown is not None:
+        # What a straightened photo does not show is as it should be.
+        found = torch.where(sample.shown[..., None], found, truth)
+        facade = facade & sample.shown
+    found = no_brighter(found, truth, weights.white)
+    terms = {"colour": colour_loss(found, truth, weights.dssim)}
+    raster = picture.raster
+    if weights.normal_consistency > 0.0 and progress >= weights.consistent_from:
+        surface, is_known = surface_normals(raster.depths, raster.alphas, sample.view)
+        consistency = normal_consistency(picture.normals, raster.alphas, surface, is_known)
+        terms["normal consistency"] = weights.normal_consistency * consistency
+    if with_glass and weights.normal_prior > 0.0 and sample.normals is not None:
+        terms["normal prior"] = weights.normal_prior * normal_prior(picture.normals, sample.normals, facade)
+    stage = weights.stage(progress) if with_glass else None
+    if stage is not None and stage.weight > 0.0:
+        worst = worst_pixels(found, truth, facade, stage.threshold)
+        terms["high frequency"] = stage.weight * worst
+    if weights.normal_smoothness > 0.0:
+        terms["normal smoothness"] = weights.normal_smoothness * normal_smoothness(picture.normals, truth)
+    if picture.penalty is not None:
+        terms["shading"] = picture.penalty
+    total = torch.stack(list(terms.values())).sum()
+    return total, {name: float(term.detach()) for name, term in terms.items()}
+
+
+def on_device(sample: Sample, device: torch.device) -> Sample:
+    """The same sample in the memory of a device."""
+    if device.type == "cpu":
+        return sample
+    return replace(
+        sample,
+        display=sample.display.to(device),
+        facade=sample.facade.to(device),
+        panels=sample.panels.to(device),
+        normals=None if sample.normals is None else sample.normals.to(device),
+        shown=None if sample.shown is None else sample.shown.to(device),
+    )
+
+
+def display_of(sample: Sample) -> Tensor:
+    """SRGB values, 0 to 1, shape (h, w, 3), float32."""
+    return sample.display.float() / 255.0
+
 
 # The strategy that a configuration asks for, and what it is shown.
 

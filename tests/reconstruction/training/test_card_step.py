@@ -34,7 +34,7 @@ from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import Splats
-from reconstruction.training import objective as objectives
+from reconstruction.training import trainer
 from reconstruction.training.card_step import SLOTS, CardStep, n_values, packed_photo, similarity
 from reconstruction.training.config import ANTIALIASED, LossWeights, Rates, TrainConfig
 from reconstruction.training.losses import dssim
@@ -180,11 +180,11 @@ def by_definition(
     exact.sky.double()
     exact.corner_loss.data = exact.corner_loss.data.double()
     gain, move = start(torch.float64)
-    monkeypatch.setattr(objectives, "display_of", lambda given: given.display.double() / 255.0)
+    monkeypatch.setattr(trainer, "display_of", lambda given: given.display.double() / 255.0)
     offsets = torch.zeros(len(exact.splats), 2, dtype=torch.float64, requires_grad=True)
     picture = exact(sample.view, gain, 3, settings=settings, screen_offsets=offsets, move=move)
     seen = replace(sample, view=moved_view(sample.view, move))
-    loss, terms = objectives.objective(picture, seen, WEIGHTS, progress, model.light is not None)
+    loss, terms = trainer.objective(picture, seen, WEIGHTS, progress, model.light is not None)
     loss.backward()
     found = Found(exact, gain, move, terms)
     found.pulls = offsets.grad

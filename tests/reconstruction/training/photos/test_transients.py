@@ -10,9 +10,9 @@ from reconstruction.light.transients import TRIED, UNSEEN
 from reconstruction.splats.rasterising.views import View
 from reconstruction.training.config import LossWeights
 from reconstruction.training.model.joint_model import Picture
-from reconstruction.training.objective import objective
 from reconstruction.training.photos.photo_stream import Sample
 from reconstruction.training.photos.transients import Transients
+from reconstruction.training.trainer import objective
 
 WIDTH, HEIGHT, N_PHOTOS = 64, 48, 8
 
