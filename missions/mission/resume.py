@@ -17,7 +17,7 @@ from planning.base.errors import InfeasibleError, MissionError
 from planning.base.findings import Finding, Severity
 from planning.base.progress import QUIET, Monitor
 from planning.plan import Plan
-from planning.revision import delete, revise
+from planning.revision.edits import delete, revise
 from planning.site.records import SiteModel
 from planning.viewpoints.prepare import Prepared, prepare
 

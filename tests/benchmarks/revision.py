@@ -11,7 +11,7 @@ from planning.coverage.evaluate import coverage
 from planning.geo.frames import Vec3
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from planning.revision import Revision, add, delete, lock, move, revise
+from planning.revision.edits import Revision, add, delete, lock, move, revise
 from planning.site.bundled import SCENES
 from planning.site.records import SiteModel
 from tests.benchmarks.harness import Benchmark, Context, Row, timer

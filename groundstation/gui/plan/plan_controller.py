@@ -26,7 +26,7 @@ from planning.parameters import CameraSettings
 from planning.plan import Plan, Viewpoint
 from planning.planner import Planned
 from planning.request import PlanRequest
-from planning.revision import Revision
+from planning.revision.edits import Revision
 from planning.site.records import SiteModel
 
 # The methods of choosing views as the pilot knows them.

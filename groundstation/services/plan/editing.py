@@ -12,7 +12,7 @@ from groundstation.services.project.document import Document
 from planning.base.findings import Finding, Severity
 from planning.geo.frames import camera_axes
 from planning.plan import Viewpoint
-from planning.revision import Revision
+from planning.revision.edits import Revision
 from planning.site.records import Airspace, Site, SiteModel
 
 BESIDE_M = 2.0

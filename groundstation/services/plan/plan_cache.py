@@ -23,7 +23,7 @@ from planning.parameters import Constraints
 from planning.plan import Camera, Plan, viewpoint_arrays
 from planning.planner import first_reusable
 from planning.request import PlanRequest
-from planning.revision import Revision, revise
+from planning.revision.edits import Revision, revise
 from planning.site.records import SiteModel
 from planning.viewpoints.prepare import Prepared, is_same_place, prepare, with_site_limits
 

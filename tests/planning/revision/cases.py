@@ -19,7 +19,7 @@ from planning.geo.frames import Vec3
 from planning.parameters import Constraints, FlightRules, GreedyParameters
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from planning.revision import Revision, add, delete, lock, move, revise
+from planning.revision.edits import Revision, add, delete, lock, move, revise
 from planning.site.bundled import SCENES
 from planning.site.records import SiteModel
 from planning.viewpoints.prepare import Prepared, prepare

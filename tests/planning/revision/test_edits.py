@@ -17,8 +17,7 @@ from planning.coverage.sections import in_picture
 from planning.motion.timing import sortie_flight_path, stopping_duration_s
 from planning.parameters import FlightRules
 from planning.plan import Plan, Sortie, Viewpoint, plan_to_json, viewpoint_arrays
-from planning.revision import Revision, add, aim_at, delete, lock, move, next_id, revise, unlock
-from planning.revision.edits import with_other_stops
+from planning.revision.edits import Revision, add, aim_at, delete, lock, move, next_id, revise, unlock, with_other_stops
 from planning.routing.roadmap import build_roadmap
 from planning.site.free_space import free_space
 from planning.viewpoints.prepare import prepare

@@ -18,7 +18,7 @@ from planning.motion.speed_profile import fastest_profile
 from planning.motion.timing import flight_path, motion_limits, stopping_times_s
 from planning.parameters import FlightRules
 from planning.plan import Plan, viewpoint_arrays
-from planning.revision import Revision, delete, lock, move, revise
+from planning.revision.edits import Revision, delete, lock, move, revise
 from planning.routing.rally import SAMPLE_M
 from tests.planning.revision.cases import SETTINGS, Edit, assert_is_as_from_scratch, edits, planned, prepared
 from tests.slow import slow

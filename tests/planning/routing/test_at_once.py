@@ -19,7 +19,7 @@ from planning.parameters import FlightRules
 from planning.plan import Plan, Sortie, read_plan, write_plan
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from planning.revision import delete, revise
+from planning.revision.edits import delete, revise
 from planning.routing.at_once import (
     CHANGE_S,
     TIMING_S,

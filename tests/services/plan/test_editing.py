@@ -18,7 +18,7 @@ from groundstation.services.plan.editing import (
 )
 from groundstation.services.project.document import Document, PlanEntry
 from planning.plan import Viewpoint
-from planning.revision import delete, lock, move
+from planning.revision.edits import delete, lock, move
 from planning.site.bundled import canyon, roof
 from tests.planning.revision.cases import planned
 

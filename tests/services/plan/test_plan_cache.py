@@ -10,7 +10,7 @@ import pytest
 from groundstation.services.plan.plan_cache import ActivePlan, PreparedSite, insight_of
 from planning.insight.reasons import section_reasons
 from planning.insight.sections import PanelSampling
-from planning.revision import Revision, add, delete, lock, move
+from planning.revision.edits import Revision, add, delete, lock, move
 from tests.planning.revision.cases import planned
 
 
