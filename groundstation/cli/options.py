@@ -1,4 +1,4 @@
-"""What several commands take in the same way: numbers, lists, profile, seed, poses; wrong values as they were typed."""
+"""What several commands take in the same way: numbers, lists, profile, seed, poses, models; wrong values as typed."""
 
 from __future__ import annotations
 
@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 
     from groundstation.services.mission.readiness import FlightDay
     from groundstation.services.photos.poses import RefinedOutcome, RefineRequest
+    from groundstation.services.photos.segmentation import ScoreRequest
     from planning.base.effects import EffectSetting
+    from planning.site.importing.options import ImportOptions
     from reconstruction.panels.search.parameters import SegmentationParameters
 
 
@@ -453,3 +455,137 @@ def parameters_of(options: argparse.Namespace) -> SegmentationParameters:
     base = SegmentationParameters() if options.parameters is None else read_parameters(options.parameters)
     with in_words_of_options(SegmentationParameters):
         return with_values(base, typed_values(options, SegmentationParameters))
+
+
+# Models of buildings: where they are, what of them counts, and the airspace about them.
+
+
+def point(text: str) -> tuple[float, float, float]:
+    """Three numbers with commas between them, for argparse."""
+    parts = text.split(",")
+    if len(parts) != 3:
+        raise argparse.ArgumentTypeError(worded(say("expected three numbers with commas between them, got '{}'", text)))
+    return number(parts[0]), number(parts[1]), number(parts[2])
+
+
+def add_place_and_content(command: argparse.ArgumentParser) -> None:
+    """Where a model is and what of it counts."""
+    place = command.add_argument_group("where it is (instead of what the file says)").add_argument
+    place("--origin", type=point, metavar="LAT,LON,H", help="place of the file's zero point (H: --height-reference)")
+    place("--crs", help="coordinate reference system of the file's coordinates, such as EPSG:25832+7837")
+    place("--axis-order", choices=("auto", "xy", "yx"), default="auto", help="xy: east first, yx: north first")
+    place(
+        "--height-reference",
+        choices=("auto", "orthometric", "ellipsoid"),
+        default="auto",
+        help="heights are above sea level, the ellipsoid, or what the system says (auto; for --origin the ellipsoid)",
+    )
+    place(
+        "--ground",
+        type=number,
+        metavar="Z",
+        help="the ground's third coordinate in the file, in metres where it has no system (default: found around the "
+        "building; you are asked where two heights may be it)",
+    )
+    content = command.add_argument_group("what is in the file").add_argument
+    content("--building", metavar="ID", help="the building wanted, in a file with many")
+    content("--units", default="m", choices=("m", "cm", "mm", "ft", "in", "us-ft"), help="of a mesh file (default m)")
+    content("--up", choices=("y", "z"), help="axis that points up in a mesh file (default: y for GLB, else z)")
+    content("--deflection", type=number, default=0.005, metavar="M", help="of curved IFC surfaces (default 0.005 m)")
+
+
+def add_flight(command: argparse.ArgumentParser) -> None:
+    """Airspace and home of a new site."""
+    flight = command.add_argument_group("airspace and home (local metres east, north, up)").add_argument
+    flight("--home", type=point, metavar="E,N,U", help="take-off place (default: in front of the largest facade)")
+    flight("--airspace-margin", type=number, default=40.0, metavar="M", help="around the building (default 40 m)")
+    flight("--floor", type=number, metavar="U", help="of the airspace (default: 2 m above ground)")
+    flight("--min-height", type=number, metavar="M", help="lowest flight above the ground to be planned (default 5 m)")
+    flight("--ceiling", type=number, metavar="U", help="of the airspace (default: 30 m above the building)")
+
+
+def import_options(options: argparse.Namespace) -> ImportOptions:
+    """What the user said about a model, but for panels.
+
+    Raises
+    ------
+    InputError
+        The origin is no place on earth.
+    """
+    from planning.geo.frames import Origin
+    from planning.site.importing.options import ImportOptions
+
+    try:
+        origin = None if options.origin is None else Origin(*options.origin)
+    except ValueError as error:
+        raise InputError(about("--origin", error)) from error
+    return ImportOptions(
+        name=options.name,
+        origin=origin,
+        crs=options.crs,
+        axis_order=options.axis_order,
+        height_reference=options.height_reference,
+        up=options.up,
+        unit=options.units,
+        building=options.building,
+        ground_z=options.ground,
+        home_enu_m=options.home,
+        airspace_margin_m=options.airspace_margin,
+        floor_m=options.floor,
+        min_height_m=options.min_height,
+        ceiling_m=options.ceiling,
+        deflection_m=options.deflection,
+    )
+
+
+# Photos with truth.
+
+SETS = ("made-planar", "made-curved", "made-irregular", "cmp", "ecp", "offices", "folder")
+
+MIN_WIDTH_PX, MAX_WIDTH_PX = 160, 16_000
+
+
+def add_set_arguments(parser: Any) -> None:
+    """Photos with truth."""
+    add = parser.add_argument_group("photos with truth").add_argument
+    add("--set", dest="set_name", choices=SETS, default=SETS[0], help="default: %(default)s")
+    add("--seeds", type=int, default=10, metavar="N", help="photos of a synthetic set (default %(default)s)")
+    add("--first-seed", type=int, default=0, metavar="N", help="of a synthetic set (default %(default)s)")
+    add("--width", type=int, default=1600, metavar="PX", help="of photos of a synthetic set (default %(default)s)")
+    add("--extent-unknown", action="store_true", help="do not tell where the walls of a synthetic set end")
+    add("--data", type=Path, metavar="DIR", help="folder of cmp, ecp or offices")
+    add("--images", type=Path, metavar="DIR", help="your photos")
+    add("--truth", type=Path, metavar="DIR", help="your index images")
+    add("--rectified", action="store_true", help="your photos are fronto-parallel")
+
+
+def score_request(options: argparse.Namespace) -> ScoreRequest:
+    """The photos with truth, and how panels are looked for in them.
+
+    Raises
+    ------
+    InputError
+        A value is out of range, or a settings file cannot be read.
+    """
+    from groundstation.services.photos.segmentation import ScoreRequest
+
+    if options.seeds < 1:
+        raise InputError(say("expected 1 or more, got {}", options.seeds, place="--seeds"))
+    if options.first_seed < 0:
+        raise InputError(say("expected 0 or more, got {}", options.first_seed, place="--first-seed"))
+    if not MIN_WIDTH_PX <= options.width <= MAX_WIDTH_PX:
+        raise InputError(
+            say("expected {} to {} pixels, got {}", MIN_WIDTH_PX, MAX_WIDTH_PX, options.width, place="--width")
+        )
+    return ScoreRequest(
+        options.set_name,
+        options.seeds,
+        options.width,
+        not options.extent_unknown,
+        options.data,
+        options.images,
+        options.truth,
+        options.rectified,
+        parameters=parameters_of(options),
+        first_seed=options.first_seed,
+    )

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from groundstation.cli.commands.score import SETS
+from groundstation.cli.options import SETS
 from reconstruction.metrics.sets import SET_NAMES
 
 QUICK = ("--seeds", 2, "--width", 480)

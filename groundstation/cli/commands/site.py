@@ -15,12 +15,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.console import counted, named_like, print_json, print_next, run_job, show, tell, worded
-from groundstation.cli.options import add_time, json_file, number, planned_time
+from groundstation.cli.options import (
+    add_flight,
+    add_place_and_content,
+    add_time,
+    import_options,
+    json_file,
+    number,
+    planned_time,
+    point,
+)
 from planning.base.errors import InputError
-from planning.base.messages import about, say
+from planning.base.messages import say
 
 if TYPE_CHECKING:
-    from planning.site.importing.options import ImportOptions, PanelGrid
+    from planning.site.importing.options import PanelGrid
     from planning.site.records import Site
 
 Number3 = tuple[float, float, float]
@@ -227,32 +236,6 @@ def run_zones(options: argparse.Namespace) -> int:
     return 0
 
 
-def add_place_and_content(command: argparse.ArgumentParser) -> None:
-    """Where a model is and what of it counts; shared with other commands that read one."""
-    place = command.add_argument_group("where it is (instead of what the file says)").add_argument
-    place("--origin", type=_point, metavar="LAT,LON,H", help="place of the file's zero point (H: --height-reference)")
-    place("--crs", help="coordinate reference system of the file's coordinates, such as EPSG:25832+7837")
-    place("--axis-order", choices=("auto", "xy", "yx"), default="auto", help="xy: east first, yx: north first")
-    place(
-        "--height-reference",
-        choices=("auto", "orthometric", "ellipsoid"),
-        default="auto",
-        help="heights are above sea level, the ellipsoid, or what the system says (auto; for --origin the ellipsoid)",
-    )
-    place(
-        "--ground",
-        type=number,
-        metavar="Z",
-        help="the ground's third coordinate in the file, in metres where it has no system (default: found around the "
-        "building; you are asked where two heights may be it)",
-    )
-    content = command.add_argument_group("what is in the file").add_argument
-    content("--building", metavar="ID", help="the building wanted, in a file with many")
-    content("--units", default="m", choices=("m", "cm", "mm", "ft", "in", "us-ft"), help="of a mesh file (default m)")
-    content("--up", choices=("y", "z"), help="axis that points up in a mesh file (default: y for GLB, else z)")
-    content("--deflection", type=number, default=0.005, metavar="M", help="of curved IFC surfaces (default 0.005 m)")
-
-
 def _add_panels(command: argparse.ArgumentParser) -> None:
     grid = command.add_argument_group("panels that you state").add_argument
     grid(
@@ -273,28 +256,11 @@ def _add_panels(command: argparse.ArgumentParser) -> None:
     )
 
 
-def add_flight(command: argparse.ArgumentParser) -> None:
-    """Airspace and home of a new site; shared likewise."""
-    flight = command.add_argument_group("airspace and home (local metres east, north, up)").add_argument
-    flight("--home", type=_point, metavar="E,N,U", help="take-off place (default: in front of the largest facade)")
-    flight("--airspace-margin", type=number, default=40.0, metavar="M", help="around the building (default 40 m)")
-    flight("--floor", type=number, metavar="U", help="of the airspace (default: 2 m above ground)")
-    flight("--min-height", type=number, metavar="M", help="lowest flight above the ground to be planned (default 5 m)")
-    flight("--ceiling", type=number, metavar="U", help="of the airspace (default: 30 m above the building)")
-
-
-def _point(text: str) -> Number3:
-    parts = text.split(",")
-    if len(parts) != 3:
-        raise argparse.ArgumentTypeError(worded(say("expected three numbers with commas between them, got '{}'", text)))
-    return number(parts[0]), number(parts[1]), number(parts[2])
-
-
 def _triple(text: str) -> tuple[Number3, Number3, Number3]:
     points = text.split()
     if len(points) != 3:
         raise argparse.ArgumentTypeError(worded(say("expected three points with blanks between them, got '{}'", text)))
-    return _point(points[0]), _point(points[1]), _point(points[2])
+    return point(points[0]), point(points[1]), point(points[2])
 
 
 def run(options: argparse.Namespace) -> int:
@@ -363,40 +329,6 @@ def _print_next_step(site: Site, out: Path) -> None:
         print_next("plan", out, "-o", named_like(out, ".plan.json"))
     else:
         print_next("panels", "PHOTOS", out, "-o", named_like(out, ".panels.site.json"))
-
-
-def import_options(options: argparse.Namespace) -> ImportOptions:
-    """What the user said about a model, but for panels.
-
-    Raises
-    ------
-    InputError
-        The origin is no place on earth.
-    """
-    from planning.geo.frames import Origin
-    from planning.site.importing.options import ImportOptions
-
-    try:
-        origin = None if options.origin is None else Origin(*options.origin)
-    except ValueError as error:
-        raise InputError(about("--origin", error)) from error
-    return ImportOptions(
-        name=options.name,
-        origin=origin,
-        crs=options.crs,
-        axis_order=options.axis_order,
-        height_reference=options.height_reference,
-        up=options.up,
-        unit=options.units,
-        building=options.building,
-        ground_z=options.ground,
-        home_enu_m=options.home,
-        airspace_margin_m=options.airspace_margin,
-        floor_m=options.floor,
-        min_height_m=options.min_height,
-        ceiling_m=options.ceiling,
-        deflection_m=options.deflection,
-    )
 
 
 def _grids(options: argparse.Namespace) -> tuple[PanelGrid, ...]:

@@ -10,14 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from groundstation.cli.commands.plan import add_request_arguments, request_of
-from groundstation.cli.commands.score import add_set_arguments
-from groundstation.cli.commands.score import request_of as score_request_of
 from groundstation.cli.commands.segment import add_parameter_arguments
 from groundstation.cli.console import show, show_tradeoff, table_row, tell, worded
 from groundstation.cli.options import (
     PluginNames,
     above_zero,
     add_profile_argument,
+    add_set_arguments,
     checked_seed,
     count,
     counts,
@@ -26,6 +25,7 @@ from groundstation.cli.options import (
     new_folder,
     number,
     numbers,
+    score_request,
     wholes,
     words,
 )
@@ -652,7 +652,7 @@ def run_segment(options: argparse.Namespace) -> int:
         )
     except ValueError as error:
         raise InputError(str(error)) from error
-    request = score_request_of(
+    request = score_request(
         argparse.Namespace(**{name: each for name, each in vars(options).items() if name != "samples"})
     )
     return show_tradeoff(
