@@ -16,10 +16,20 @@ from torch.autograd.function import once_differentiable
 
 from planning.base.jit import chunks, kernel, n_threads
 from reconstruction.splats.rasterising.numba_blend import LOW_PASS2, blend_tiles, bytes_a_splat, limits_of
-from reconstruction.splats.rasterising.numba_ellipsoids import gradients_of_ellipsoids, project_ellipsoids
-from reconstruction.splats.rasterising.numba_gradients import N_OTHERS, gradients_of_splats, gradients_of_tiles
+from reconstruction.splats.rasterising.numba_gradients import (
+    N_OTHERS,
+    gradients_of_ellipsoids,
+    gradients_of_splats,
+    gradients_of_tiles,
+)
 from reconstruction.splats.rasterising.numba_lanes import N_LANES
-from reconstruction.splats.rasterising.numba_projection import N_GEOMETRY, Array, Floats, project_splats
+from reconstruction.splats.rasterising.numba_projection import (
+    N_GEOMETRY,
+    Array,
+    Floats,
+    project_ellipsoids,
+    project_splats,
+)
 from reconstruction.splats.rasterising.projection import slope_limits
 from reconstruction.splats.rasterising.raster_types import NO_DOT, SOLID, Raster, RasterSettings, steepest
 from reconstruction.splats.rasterising.views import View

@@ -63,11 +63,16 @@ from reconstruction.splats.rasterising.numba_projection import (
     Four,
     Pair,
     Quat,
+    Slopes,
     Triple,
     blurred_disc,
     covariance_of,
+    cross,
+    dot,
+    ellipse_covariance,
     planes_of,
     see,
+    see_ellipsoid,
     slopes_of_shown,
 )
 from reconstruction.splats.rasterising.projection import SMALLEST
@@ -88,7 +93,7 @@ AHEAD = 8
 
 
 @inline
-def in_world(camera: Array, x: float, y: float, z: float) -> Triple:
+def _in_world(camera: Array, x: float, y: float, z: float) -> Triple:
     """A direction of camera axes in the model's frame."""
     return (
         camera[0, 0] * x + camera[1, 0] * y + camera[2, 0] * z,
@@ -164,7 +169,7 @@ def _back_through_blur(
 
 
 @inline
-def back_to_quat(q: Quat, g_u: Triple, g_v: Triple, out: Floats, i: int) -> None:
+def _back_to_quat(q: Quat, g_u: Triple, g_v: Triple, out: Floats, i: int) -> None:
     """From the gradients of a rotation's first two columns to the quaternion of any length."""
     norm, w, x, y, z = q
     g_w = 2.0 * (z * g_u[1] - y * g_u[2] - z * g_v[0] + x * g_v[2])
@@ -178,7 +183,7 @@ def back_to_quat(q: Quat, g_u: Triple, g_v: Triple, out: Floats, i: int) -> None
 
 
 @inline
-def add_up(slots: Floats, places: NDArray[np.int32], first: int, last: int, sums: Floats) -> None:
+def _add_up(slots: Floats, places: NDArray[np.int32], first: int, last: int, sums: Floats) -> None:
     """Add up the slots at the places `first` to `last`, and have those fetched that come next."""
     width, n_lanes = slots.shape[1], slots.shape[1] - 2
     sums[:] = np.float32(0.0)
@@ -229,7 +234,7 @@ def gradients_of_splats(
     for i in range(start, stop):
         if firsts[i] == firsts[i + 1]:
             continue
-        add_up(slots, places, firsts[i], firsts[i + 1], sums)
+        _add_up(slots, places, firsts[i], firsts[i + 1], sums)
         for k in range(N_LANES):
             g[k] = sums[k]
         for k in range(n_features):
@@ -260,10 +265,10 @@ def gradients_of_splats(
         g_scales[i, 0], g_scales[i, 1] = along_u * over_z, along_v * over_z
         g_over_z = s_u * along_u + s_v * along_v + g_xz * x + g_yz * y
         s_u, s_v = s_u * over_z, s_v * over_z
-        g_first = in_world(camera, s_u * ux, s_u * uy, s_u * uz)
-        g_second = in_world(camera, s_v * vx, s_v * vy, s_v * vz)
-        back_to_quat(quat, g_first, g_second, g_quats, i)
-        place = in_world(camera, g_xz * over_z, g_yz * over_z, g_depth - g_over_z * over_z * over_z)
+        g_first = _in_world(camera, s_u * ux, s_u * uy, s_u * uz)
+        g_second = _in_world(camera, s_v * vx, s_v * vy, s_v * vz)
+        _back_to_quat(quat, g_first, g_second, g_quats, i)
+        place = _in_world(camera, g_xz * over_z, g_yz * over_z, g_depth - g_over_z * over_z * over_z)
         g_means[i, 0], g_means[i, 1], g_means[i, 2] = place
 
 
@@ -463,3 +468,122 @@ def gradients_of_tiles(
             _through_geometry(g, listed, n, x, y, limits, load_lanes(of_more, N_LANES), kept, slots, start)
         for k in range(stop - start):
             slots[start + k, slots.shape[1] - 1] /= g[k, OPACITY]
+
+
+# Ellipsoids.
+
+LEAST_SQUARE = 1e-60
+"""Of a picture's area without blur, px^4: far below what is ever drawn."""
+
+
+@inline
+def _back_through_covariance(
+    row_x: Triple, row_y: Triple, blur2: float, g: Array, g_share: float
+) -> tuple[Triple, Triple]:
+    """From the gradients of the geometry, and of the share of what is drawn that is its own, to those of the two rows.
+
+    The geometry is sqrt(xx / d), xy / sqrt(xx d) and 1 / sqrt(xx), d the determinant; the share is |a x b| / sqrt(d).
+    """
+    xx, xy, across, determinant = ellipse_covariance(row_x, row_y, blur2)
+    square = max(dot(across, across), LEAST_SQUARE)
+    g_square = 0.5 * g_share / math.sqrt(square * determinant)
+    over_xx, over_d = 1.0 / xx, 1.0 / determinant
+    by_xu, by_yv = g[J_XU] * math.sqrt(xx * over_d), g[J_YV] * math.sqrt(over_xx)
+    g_xy = g[J_YU] * math.sqrt(over_xx * over_d)
+    g_xx = 0.5 * over_xx * (by_xu - by_yv - g_xy * xy)
+    g_d = -0.5 * over_d * (by_xu + g_xy * xy + g_share * math.sqrt(square * over_d))
+    g_cross = g_d + g_square
+    by_x, by_y = cross(row_y, across), cross(across, row_x)
+    g_row_x = (
+        2.0 * ((g_xx + g_d * blur2) * row_x[0] + g_cross * by_x[0]) + g_xy * row_y[0],
+        2.0 * ((g_xx + g_d * blur2) * row_x[1] + g_cross * by_x[1]) + g_xy * row_y[1],
+        2.0 * ((g_xx + g_d * blur2) * row_x[2] + g_cross * by_x[2]) + g_xy * row_y[2],
+    )
+    g_row_y = (
+        2.0 * (g_d * blur2 * row_y[0] + g_cross * by_y[0]) + g_xy * row_x[0],
+        2.0 * (g_d * blur2 * row_y[1] + g_cross * by_y[1]) + g_xy * row_x[1],
+        2.0 * (g_d * blur2 * row_y[2] + g_cross * by_y[2]) + g_xy * row_x[2],
+    )
+    return g_row_x, g_row_y
+
+
+@inline
+def _back_to_axis(
+    axis: Triple, slopes: Slopes, lens: Array, size: float, g_x: float, g_y: float
+) -> tuple[float, float, float, Triple]:
+    """From an axis' entries of the rows to its size, which is over z, to x / z and y / z, and to the axis itself."""
+    across, down = g_x * lens[0], g_y * lens[1]
+    forward = -across * slopes[0] - down * slopes[1]
+    along = across * axis[0] + down * axis[1] + forward * axis[2]
+    back = (size * across, size * down, size * forward)
+    return along, -across * size * axis[2], -down * size * axis[2], back
+
+
+@kernel
+def gradients_of_ellipsoids(
+    means: Floats,
+    quats_wxyz: Floats,
+    scales: Floats,
+    opacities: Floats,
+    camera: Array,
+    lens: Array,
+    least: float,
+    blur_px: float,
+    antialiased: bool,
+    slope_limits: Array,
+    firsts: NDArray[np.int64],
+    places: NDArray[np.int32],
+    slots: Floats,
+    start: int,
+    stop: int,
+    g_means: Floats,
+    g_quats: Floats,
+    g_scales: Floats,
+    g_opacities: Floats,
+    g_features: Floats,
+    g_offsets: Floats,
+) -> None:
+    """Add up the slots of ellipsoids `start` to `stop`, and take them back."""
+    n_features, width = g_features.shape[1], slots.shape[1]
+    sums, g = np.empty(width, np.float32), np.empty(N_LANES)
+    for i in range(start, stop):
+        if firsts[i] == firsts[i + 1]:
+            continue
+        _add_up(slots, places, firsts[i], firsts[i + 1], sums)
+        for k in range(N_LANES):
+            g[k] = sums[k]
+        for k in range(n_features):
+            g_features[i, k] = sums[OF_FEATURES + k]
+        g_depth, g_opacities[i] = np.float64(sums[width - 2]), sums[width - 1]
+        g_offsets[i, 0], g_offsets[i, 1] = g[CENTRE_X], g[CENTRE_Y]
+        middle, quat, axes, slopes, row_x, row_y = see_ellipsoid(
+            means, quats_wxyz, scales, camera, lens, slope_limits, i
+        )
+        x, y, z = middle
+        _, _, across, determinant = ellipse_covariance(row_x, row_y, blur_px * blur_px)
+        share = math.sqrt(dot(across, across) / determinant) if antialiased else 1.0
+        by_opacity, by_share = slopes_of_shown(opacities[i], share, least)
+        by_share *= antialiased
+        g_opacities[i] *= by_opacity
+        g_share = np.float64(sums[width - 1]) * by_share
+        g_row_x, g_row_y = _back_through_covariance(row_x, row_y, blur_px * blur_px, g, g_share)
+        over_z = 1.0 / z
+        s_1, s_2, s_3 = scales[i, 0] * over_z, scales[i, 1] * over_z, scales[i, 2] * over_z
+        along_1, across_1, down_1, g_1 = _back_to_axis(axes[0], slopes, lens, s_1, g_row_x[0], g_row_y[0])
+        along_2, across_2, down_2, g_2 = _back_to_axis(axes[1], slopes, lens, s_2, g_row_x[1], g_row_y[1])
+        along_3, across_3, down_3, g_3 = _back_to_axis(axes[2], slopes, lens, s_3, g_row_x[2], g_row_y[2])
+        g_scales[i, 0], g_scales[i, 1], g_scales[i, 2] = along_1 * over_z, along_2 * over_z, along_3 * over_z
+        # The third axis is the cross product of the others.
+        turned_1, turned_2 = cross(axes[1], g_3), cross(g_3, axes[0])
+        g_first = _in_world(camera, g_1[0] + turned_1[0], g_1[1] + turned_1[1], g_1[2] + turned_1[2])
+        g_second = _in_world(camera, g_2[0] + turned_2[0], g_2[1] + turned_2[1], g_2[2] + turned_2[2])
+        _back_to_quat(quat, g_first, g_second, g_quats, i)
+        # x / z and y / z appear in the middle's pixel and, unless they are limited, in J; all of J is over z.
+        g_xz, g_yz = g[CENTRE_X] * lens[0], g[CENTRE_Y] * lens[1]
+        if slopes[2]:
+            g_xz += across_1 + across_2 + across_3
+        if slopes[3]:
+            g_yz += down_1 + down_2 + down_3
+        g_z = g_xz * x * over_z + g_yz * y * over_z + s_1 * along_1 + s_2 * along_2 + s_3 * along_3
+        place = _in_world(camera, g_xz * over_z, g_yz * over_z, g_depth - g_z * over_z)
+        g_means[i, 0], g_means[i, 1], g_means[i, 2] = place

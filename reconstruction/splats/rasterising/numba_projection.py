@@ -340,3 +340,129 @@ def project_splats(
         else:
             geometry[i, J_XU], geometry[i, J_XV], geometry[i, J_YU] = EDGE_ON_JACOBIAN, 0.0, 0.0
             geometry[i, J_YV], geometry[i, E], geometry[i, F] = EDGE_ON_JACOBIAN, 0.0, 0.0
+
+
+# Ellipsoids, by `projection.project_ellipsoids`: drawn as discs of one depth (e = f = 0), so that squares, blending and
+# gradients are those of flat splats. The low-pass filter never counts: the blur is in the disc.
+
+Axes = tuple[Triple, Triple, Triple]
+Slopes = tuple[float, float, bool, bool]
+"""x / z and y / z as they are in J, and whether they are those of the middle."""
+
+
+@inline
+def dot(a: Triple, b: Triple) -> float:
+    """Dot product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inline
+def cross(a: Triple, b: Triple) -> Triple:
+    """Cross product."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@inline
+def see_ellipsoid(
+    means: Floats, quats_wxyz: Floats, scales: Floats, camera: Array, lens: Array, slope_limits: Array, i: int
+) -> tuple[Triple, Quat, Axes, Slopes, Triple, Triple]:
+    """Ellipsoid `i` in camera axes: middle, rotation, unit axes, slopes, and the two rows of J W R S."""
+    x, y, z = in_camera(camera, np.float64(means[i, 0]), np.float64(means[i, 1]), np.float64(means[i, 2]))
+    x, y, z = x + camera[0, 3], y + camera[1, 3], z + camera[2, 3]
+    first, second, quat = rotation_columns(
+        np.float64(quats_wxyz[i, 0]), np.float64(quats_wxyz[i, 1]),
+        np.float64(quats_wxyz[i, 2]), np.float64(quats_wxyz[i, 3]),
+    )  # fmt: skip
+    third = cross(first, second)
+    first = in_camera(camera, first[0], first[1], first[2])
+    second = in_camera(camera, second[0], second[1], second[2])
+    third = in_camera(camera, third[0], third[1], third[2])
+    over_z = 1.0 / z
+    across = min(max(x * over_z, slope_limits[0]), slope_limits[1])
+    down = min(max(y * over_z, slope_limits[2]), slope_limits[3])
+    s_1, s_2, s_3 = scales[i, 0] * over_z, scales[i, 1] * over_z, scales[i, 2] * over_z
+    row_x = (
+        lens[0] * s_1 * (first[0] - across * first[2]),
+        lens[0] * s_2 * (second[0] - across * second[2]),
+        lens[0] * s_3 * (third[0] - across * third[2]),
+    )
+    row_y = (
+        lens[1] * s_1 * (first[1] - down * first[2]),
+        lens[1] * s_2 * (second[1] - down * second[2]),
+        lens[1] * s_3 * (third[1] - down * third[2]),
+    )
+    slopes = (across, down, across == x * over_z, down == y * over_z)
+    return (x, y, z), quat, (first, second, third), slopes, row_x, row_y
+
+
+@inline
+def ellipse_covariance(row_x: Triple, row_y: Triple, blur2: float) -> tuple[float, float, Triple, float]:
+    """Of Sigma' the first two entries; the cross product of its rows, and its determinant."""
+    xx, across = dot(row_x, row_x), cross(row_x, row_y)
+    determinant = dot(across, across) + blur2 * (xx + dot(row_y, row_y) + blur2)
+    return xx + blur2, dot(row_x, row_y), across, determinant
+
+
+@kernel
+def project_ellipsoids(
+    means: Floats,
+    quats_wxyz: Floats,
+    scales: Floats,
+    opacities: Floats,
+    offsets: Floats,
+    camera: Array,
+    lens: Array,
+    size: tuple[int, int],
+    limits: Array,
+    slope_limits: Array,
+    start: int,
+    stop: int,
+    geometry: Floats,
+    depths: Array,
+    boxes: NDArray[np.int32],
+    radii: Floats,
+) -> None:
+    """Fill the last four arrays for ellipsoids `start` to `stop`, as `project_splats` does for discs.
+
+    Parameters
+    ----------
+    scales
+        Shape (n, 3).
+    limits
+        Nearest depth, least alpha, the blur's standard deviation, and 1 where what the blur makes larger is as much
+        more transparent.
+    slope_limits
+        Of x / z and y / z in J, shape (4,).
+    """
+    near_m, least, blur2, antialiased = limits[0], limits[1], limits[2] * limits[2], limits[3] > 0.0
+    for i in range(start, stop):
+        boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3] = 0, 0, 0, 0
+        radii[i] = 0.0
+        (x, y, z), _, _, _, row_x, row_y = see_ellipsoid(means, quats_wxyz, scales, camera, lens, slope_limits, i)
+        s_1, s_2, s_3 = np.float64(scales[i, 0]), np.float64(scales[i, 1]), np.float64(scales[i, 2])
+        opacity = np.float64(opacities[i])
+        # What is no number makes the sum one, and what is infinite the product.
+        total = x + y + z + s_1 + s_2 + s_3 + opacity
+        total += quats_wxyz[i, 0] + quats_wxyz[i, 1] + quats_wxyz[i, 2] + quats_wxyz[i, 3]
+        is_finite = math.isfinite(0.0 * total)
+        if not (is_finite and z > near_m and opacity >= least and min(s_1, s_2, s_3) > 0.0):
+            continue
+        cx, cy = lens[0] * x / z + lens[2], lens[1] * y / z + lens[3]
+        if len(offsets) > 0:
+            cx, cy = cx + offsets[i, 0], cy + offsets[i, 1]
+        if max(abs(cx), abs(cy)) > WIDEST_PX:
+            continue
+        xx, xy, across, determinant = ellipse_covariance(row_x, row_y, blur2)
+        share = math.sqrt(dot(across, across) / determinant) if antialiased else 1.0
+        shown = shown_opacity(opacity, share, least)
+        j_xu, root = math.sqrt(xx), math.sqrt(determinant)
+        j_yu, j_yv = xy / j_xu, root / j_xu
+        reach = math.sqrt(max(2.0 * math.log(shown / least), 0.0))
+        box, outline = outline_of((j_xu, 0.0, j_yu, j_yv), (0.0, 0.0), reach)
+        if max(box[1] - box[0], box[3] - box[2]) >= LARGEST_OUTLINE_PX:
+            outline = (0.0, 0.0, 0.0, WIDEST_PX, 0.0)
+        if not place_disc((cx, cy, z), box, outline, 0.0, shown, size, i, geometry, depths, boxes, radii):
+            continue
+        geometry[i, J_XU], geometry[i, J_XV] = 1.0 / j_yv, 0.0
+        geometry[i, J_YU], geometry[i, J_YV] = j_yu / root, 1.0 / j_xu
+        geometry[i, E], geometry[i, F], geometry[i, LOWEST], geometry[i, HIGHEST] = 0.0, 0.0, 0.0, 0.0
