@@ -587,3 +587,15 @@ class PlanParameters:
         if sum(value is not None for value in goals) > 1:
             raise ValueError("expected at most one of a number of views, a share, a number of batteries and a gain")
         check(self)
+
+    @property
+    def wanted_share(self) -> float | None:
+        """Share of what can be covered that the plan is to reach, `DEFAULT_SHARE` where greedy is told no goal.
+
+        None where another goal is set, and where a method that flies a pattern of its own is told none.
+        """
+        if self.share is not None:
+            return self.share
+        others = (self.n_views, self.n_batteries, self.least_gain_db)
+        has_goal = any(value is not None for value in others)
+        return None if has_goal or self.method != "greedy" else DEFAULT_SHARE

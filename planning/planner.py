@@ -356,7 +356,7 @@ def _that_can_be_routed(
 
 
 def _open_sections(problem: ViewProblem, plan: Plan, request: PlanRequest) -> tuple[OpenSection, ...]:
-    wanted = (request.share or 0.0) * plan.coverage.reachable_upper_bound
+    wanted = (request.wanted_share or 0.0) * plan.coverage.reachable_upper_bound
     if plan.coverage.covered >= wanted:
         return ()
     views = viewpoint_arrays(plan.viewpoints)

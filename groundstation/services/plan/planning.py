@@ -181,17 +181,16 @@ def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
             "takes {} of {} batteries: more views would show nothing new or could not be flown", n_sorties, n_batteries
         )
         yield Finding(Severity.NOTE, "fewer-sorties", text, "", float(n_sorties), float(n_batteries), "sorties")
-    if request.share is None:
+    wanted = request.wanted_share
+    if wanted is None:
         return
     share = plan.coverage.covered / max(plan.coverage.reachable_upper_bound, 1)
-    if share < request.share:
-        text = say(
-            "covers {:.2f} % of what is possible at most, {:g} % were asked for", 100.0 * share, 100.0 * request.share
-        )
+    if share < wanted:
+        text = say("covers {:.2f} % of what is possible at most, {:g} % were asked for", 100.0 * share, 100.0 * wanted)
         if request.method != "greedy":
             advice = say("the method flies a pattern of its own")
             text = glue(text, "; ", advice)
-        yield Finding(Severity.WARNING, "less-coverage", text, "", share, request.share)
+        yield Finding(Severity.WARNING, "less-coverage", text, "", share, wanted)
         if request.method == "greedy":
             yield from why_open(planned)
 

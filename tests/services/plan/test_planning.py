@@ -17,7 +17,7 @@ from groundstation.services.plan.planning import (
 from planning.base.errors import InfeasibleError, InputError, OperationCancelled
 from planning.base.findings import Finding, Severity, is_flyable
 from planning.checks import check_plan
-from planning.parameters import Constraints
+from planning.parameters import DEFAULT_SHARE, Constraints
 from planning.plan import read_plan, write_plan
 from planning.planner import FEWEST_ROUTED
 from planning.request import PlanRequest
@@ -99,6 +99,26 @@ def test_a_plan_that_falls_short_of_the_request_says_so(site, request_, codes):
     assert [finding.code for finding in planned.findings] == codes
     for finding in planned.findings:
         assert finding.value < finding.limit
+
+
+def test_the_goal_that_stands_where_none_was_set_is_not_missed_in_silence(site):
+    """The time is up before anything is proved, so that far less is covered than what counts as possible."""
+    request = PlanRequest(time_budget_s=5.0, greedy=QUICK)
+    told = [
+        {
+            finding.code: finding.limit
+            for finding in plan_document_site(read_site(site), each, started_s=time.perf_counter() - 10.0).findings
+        }
+        for each in (request, replace(request, share=DEFAULT_SHARE))
+    ]
+    assert told[0] == told[1]
+    assert told[0]["less-coverage"] == DEFAULT_SHARE
+    assert "open-undecided" in told[0]
+
+
+@pytest.mark.parametrize("goal", [{"n_views": 4}, {"n_batteries": 1}, {"least_gain_db": 0.5}, {"method": "noto"}])
+def test_no_share_is_wanted_where_something_else_was_asked_for(goal):
+    assert PlanRequest(**goal).wanted_share is None
 
 
 @pytest.mark.slow
