@@ -1,7 +1,7 @@
 """ED-269: JSON of UAS geographical zones (EUROCAE, 2020), as national publishers write it.
 
 Positions are longitude first, circles in metres, heights in `uomDimensions`. Limits that are left out are the ground
-and the sky.
+and the sky. Zones are listed as `features`, or as `UASZoneList` where a U-space's common information service answers.
 """
 
 from __future__ import annotations
@@ -26,20 +26,25 @@ _VOLUME_FIELDS = (
 _PROJECTION_FIELDS = ("type", "coordinates", "center", "radius")
 
 
+def _zones_of(content: Any) -> list[Any]:
+    """What the file lists as zones, unread; GeoJSON has features, too, and says that it is a collection of them."""
+    if not isinstance(content, dict) or content.get("type") == "FeatureCollection":
+        return []
+    listed = content.get("features", content.get("UASZoneList"))
+    return listed if isinstance(listed, list) else []
+
+
 def recognises(content: Any) -> bool:
-    """Whether parsed JSON is ED-269: features whose geometry is a list of volumes, or that say a restriction."""
-    features = content.get("features") if isinstance(content, dict) else None
-    if not isinstance(features, list) or content.get("type") == "FeatureCollection":
-        return False
+    """Whether parsed JSON is ED-269: zones whose geometry is a list of volumes, or that say a restriction."""
     return any(
         isinstance(each, dict) and ("restriction" in each or isinstance(each.get("geometry"), list))
-        for each in features
+        for each in _zones_of(content)
     )
 
 
 def read(content: Any, path: Path) -> ZoneSet:
     """Zones of an ED-269 file, parsed."""
-    zones = (_zone(feature, f"{path.stem} {number}") for number, feature in enumerate(content["features"], 1))
+    zones = (_zone(feature, f"{path.stem} {number}") for number, feature in enumerate(_zones_of(content), 1))
     return ZoneSet("ED-269", tuple(zones), publisher=Fields(content, "file", []).text("title"))
 
 

@@ -6,6 +6,7 @@ Also those that ED-269 and ED-318 share (EUROCAE): restrictions, authorities and
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Collection, Mapping
 from typing import Any
 
@@ -13,6 +14,8 @@ from planning.base.errors import shortened
 from planning.base.messages import say
 from planning.site.zones.records import Authority, Clock, Daily, Daylight, Period, Restriction
 from planning.site.zones.times import clock, moment, week_days
+
+_NUMBER = re.compile(r"[-+]?[0-9]{1,12}(\.[0-9]{1,12})?")
 
 MAX_SHOWN = 40
 """Characters of a value that a question quotes."""
@@ -77,10 +80,12 @@ class Fields:
         return (*plain, *(each["text"].strip() for each in told[:1]))
 
     def number(self, name: str) -> float | None:
-        """A finite number, None where there is none."""
+        """A finite number, None where there is none; some publishers put numbers in quotation marks."""
         value = self.values.get(name)
         if value is None:
             return None
+        if isinstance(value, str) and _NUMBER.fullmatch(value.strip()):
+            return float(value)
         if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
             return float(value)
         self.ask(name, value)

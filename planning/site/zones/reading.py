@@ -89,6 +89,8 @@ def zones_of(written: bytes, path: Path) -> ZoneSet:
             return replace(found, zones=_with_unique_ids(found.zones))
     if written.startswith(b"PK\x03\x04"):
         raise InputError.say("expected {}, found an archive; unpack it first", KNOWN, place=path)
+    if not start:
+        raise InputError.say("expected {}, found an empty file; copy it again", KNOWN, place=path)
     raise InputError.say("expected {}, found something else", KNOWN, place=path)
 
 

@@ -61,6 +61,17 @@ def test_ed269_says_who_what_why_where_and_when():
     assert not zone.place_questions
 
 
+def test_ed269_lists_its_zones_under_either_name_and_may_quote_its_numbers():
+    circle = {"type": "Circle", "center": [8.0, 47.0], "radius": "3000"}
+    quoted = ed269_feature(ed269_volume(circle, "10", "120.5"))
+    told = json.dumps({"formatVersion": "1.0.0", "createdAt": "2022-11-30T14:50:33Z", "UASZoneList": [quoted]})
+    zone = only(told.encode())
+    assert zone == only(ed269(ed269_feature(ed269_volume({**circle, "radius": 3000}, 10, 120.5))))
+    assert zone.volumes[0].upper.value_m == 120.5
+    assert not zone.questions
+    assert not zone.place_questions
+
+
 def test_ed318_has_layers_circles_languages_events_and_a_date():
     circle = {"type": "Point", "coordinates": [8.0, 47.0], "extent": {"subType": "Circle", "radius": 3500}}
     layer = {"upper": 500, "upperReference": "WGS84", "lower": 100, "lowerReference": "AMSL", "uom": "ft"}
@@ -208,6 +219,8 @@ FEATURE = ed269_feature(ed269_volume(polygon(RING)))
         changed(FEATURE, geometry=[ed269_volume({"type": "Ellipse"})]),
         changed(FEATURE, geometry=[ed269_volume(polygon([*RING[:2], [8.0, 95.0], *RING[2:]]))]),
         changed(FEATURE, geometry="everywhere"),
+        changed(FEATURE, geometry=[{**FEATURE["geometry"][0], "upperLimit": "120 or so"}]),
+        changed(FEATURE, geometry=[{**FEATURE["geometry"][0], "upperLimit": "1e999"}]),
         ed318(polygon(RING), {"upper": 120, "upperReference": "FL", "lower": 0, "lowerReference": "AGL"}),
         ed318(polygon(RING), limitedApplicability=[{"schedule": [{"day": ["XMAS"], "startTime": "10:00Z"}]}]),
         ed318({"type": "Point", "coordinates": [8.0, 47.0]}),
@@ -240,7 +253,9 @@ def test_zones_of_one_name_have_identifiers_of_their_own():
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"", "found something else"),
+        (b"", "an empty file"),
+        (b"\xef\xbb\xbf \n", "an empty file"),
+        (b'{"UASZoneList": []}', "found something else"),
         (b"{}", "found something else"),
         (b'{"features": []}', "found something else"),
         (b'{"type": "FeatureCollection", "features": []}', "no zone"),
