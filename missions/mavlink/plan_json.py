@@ -136,7 +136,7 @@ def read_plan_json(path: Path) -> MavlinkFile:
 def _read_item(item: Any, place: str) -> list[MissionItem]:
     """The items that a simple or complex item stands for."""
     if not isinstance(item, dict):
-        raise MissionError.say("expected an object, got {}", type(item).__name__, place=place)
+        raise MissionError.say("expected an object, got {}", _written(item), place=place)
     if item.get("type") == "ComplexItem":
         name = item.get("complexItemType", "unnamed")
         transects = item.get("TransectStyleComplexItem")
@@ -158,18 +158,26 @@ def _read_item(item: Any, place: str) -> list[MissionItem]:
         raise MissionError.say("type is '{}'; expected SimpleItem or ComplexItem", item.get("type"), place=place)
     command, frame, params = item.get("command"), item.get("frame"), item.get("params")
     if not _is_number(command) or not _is_number(frame):
-        raise MissionError.say("expected numbers for command and frame, got {} and {}", command, frame, place=place)
+        raise MissionError.say(
+            "expected numbers for command and frame, got {} and {}", *map(_written, (command, frame)), place=place
+        )
     if not isinstance(params, list) or len(params) != 7 or not all(p is None or _is_number(p) for p in params):
-        raise MissionError.say("expected params to be 7 numbers or null, got {}", str(params)[:60], place=place)
+        raise MissionError.say("expected params to be 7 numbers or null, got {}", _written(params), place=place)
     values = [math.nan if value is None else float(value) for value in params]
     viewpoint_id = item.get(VIEWPOINT_KEY)
     filled: Params = (values[0], values[1], values[2], values[3], values[4], values[5], values[6])
     return [MissionItem(int(command), int(frame), filled, viewpoint_id if isinstance(viewpoint_id, str) else "")]
 
 
+def _written(value: Any) -> str:
+    """A value as it stands in the file, cut where it is long: who reads of it knows JSON at most, not Python."""
+    text = json.dumps(value, ensure_ascii=False)
+    return text if len(text) <= 60 else f"{text[:60]} ..."
+
+
 def _list(content: Any, place: str) -> list[Any]:
     if not isinstance(content, list):
-        raise MissionError.say("expected a list, got {}", type(content).__name__, place=place)
+        raise MissionError.say("expected a list, got {}", _written(content), place=place)
     return content
 
 

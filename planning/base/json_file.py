@@ -36,6 +36,8 @@ JSON_FILE = FileLimit(say("a JSON file"), 512 * MIB)
 LARGEST_INTEGER = 2**64
 """Whole numbers beyond are none of ours, and no float that is close enough."""
 
+_TOO_DEEP = say("nested too deeply: lists in lists without end; copy it again or make it anew")
+
 MAX_DEPTH = 100
 """Levels of lists and objects; GeoJSON and CityJSON, the deepest that are read, have under 12."""
 
@@ -92,7 +94,7 @@ def parse_json(written: bytes, path: Path, *, names_files: bool = False) -> Any:
             "not valid JSON, line {}, column {}: {}", error.lineno, error.colno, error.msg, place=path
         ) from error
     except RecursionError as error:
-        raise InputError.say("nested too deeply for a file of ours", place=path) from error
+        raise InputError(about(path, _TOO_DEEP)) from error
     except ValueError as error:
         raise InputError.say("holds a number with too many digits ({})", error, place=path) from error
     _check_values(content, path, names_files)
@@ -120,7 +122,7 @@ def _check_values(content: Any, path: Path, names_files: bool, *, is_toml: bool 
         if not deeper:
             return
         level = deeper
-    raise InputError.say("nested too deeply for a file of ours", place=path)
+    raise InputError(about(path, _TOO_DEEP))
 
 
 def _is_text(text: str) -> bool:
@@ -313,7 +315,7 @@ def parse_toml(written: bytes, path: Path) -> dict[str, Any]:
     except ValueError as error:  # TOMLDecodeError, UnicodeDecodeError, and numbers with thousands of digits
         raise InputError.say("not valid TOML ({})", error, place=path) from error
     except RecursionError as error:
-        raise InputError.say("nested too deeply for a file of ours", place=path) from error
+        raise InputError(about(path, _TOO_DEEP)) from error
 
 
 def check_settings(content: Mapping[str, Any], record: type[Any], path: Path, place: str = "") -> None:

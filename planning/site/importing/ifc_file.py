@@ -336,7 +336,11 @@ def ifc_source(path: Path, content: IfcContent, triangles: Array, options: Impor
         There is no geometry or no glass, or the place is not known.
     """
     if len(triangles) == 0:
-        raise InputError.say("no building element in this file has geometry", place=path)
+        raise InputError.say(
+            "no building element in this file has geometry; export the building again, with the bodies of its walls "
+            "and windows",
+            place=path,
+        )
     if options.panels_required and not content.pane_ids and not options.panel_grids:
         raise InputError.say(
             "there is neither a window nor a glazed plate with geometry; {}", HOW_TO_GET_PANELS, place=path

@@ -138,9 +138,9 @@ def test_structure_scan_is_refused_because_its_items_are_not_in_the_file(tmp_pat
         ({"fileType": "Fence"}, "no QGroundControl plan"),
         ({"fileType": "Plan", "version": 1, "geoFence": {}}, "has no mission"),
         (plan_of() | {"version": 2}, "version is 2; expected 1"),
-        (plan_of(items=None), "expected a list, got NoneType"),
+        (plan_of(items=None), "expected a list, got null"),
         (plan_of({"type": "Simple"}), "type is 'Simple'"),
-        (plan_of(3), "expected an object, got int"),  # type: ignore[arg-type]
+        (plan_of(3), "expected an object, got 3$"),  # type: ignore[arg-type]
         (plan_of({"type": "SimpleItem", "command": "16", "frame": 3}), "expected numbers for command and frame"),
         (plan_of({"type": "SimpleItem", "command": 16, "frame": 3, "params": [1]}), "expected params to be 7 numbers"),
         (plan_of(item(16, 0, 0, 0, 0, 95.0, 5.0, 30)), "not on the globe"),
