@@ -167,6 +167,8 @@ class TrainConfig:
     own_exposures
         Whether each photo has a gain and a white balance of its own: `exposures.OwnExposures`. Off, gains stay what the
         folder says.
+    outlier_photos
+        Whether photos are left out that do not show what others show of the same points: `exposures.OutlierPhotos`.
     own_poses
         Whether each photo's pose is corrected while splats are learned: `poses.PoseCorrections`.
     transients
@@ -214,6 +216,7 @@ class TrainConfig:
     reflections: ReflectionConfig = field(default_factory=ReflectionConfig)
     overexposed: EffectSetting = "auto"
     own_exposures: EffectSetting = "auto"
+    outlier_photos: EffectSetting = "auto"
     own_poses: EffectSetting = "auto"
     transients: EffectSetting = "auto"
     light_apart: EffectSetting = "auto"

@@ -50,7 +50,7 @@ from reconstruction.training.methods.shader import Shader, Surroundings
 from reconstruction.training.methods.shaders import converted_for_method, shader_of, with_primitive
 from reconstruction.training.model.joint_model import SceneModel
 from reconstruction.training.model.record import SiteRecord, site_record
-from reconstruction.training.photos.exposures import Exposures, own_exposures
+from reconstruction.training.photos.exposures import Exposures, told_by_points
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
 from reconstruction.training.photos.poses import Move, PoseCorrections, learned_moves, moved
 from reconstruction.training.photos.transients import Transients
@@ -369,14 +369,22 @@ def start_model(
     learned = tuple(photo for photo in source.photos if photo.name not in held_out)
     scene = known_scene(source)
     origin = model_origin(scene)
-    point_gains, decision = own_exposures(
-        source, learned, scene.points_enu_m, scene.mesh, config.own_exposures, monitor
+    told = told_by_points(
+        *(source, learned, scene.points_enu_m, scene.mesh),
+        *(config.own_exposures, config.outlier_photos, monitor),
     )
-    config = replace(config, own_exposures="on" if decision.on else "off")
-    decisions: tuple[Decision, ...] = (decision,)
+    kept = [number for number in range(len(learned)) if number not in told.outliers]
+    learned, point_gains = tuple(learned[number] for number in kept), told.gains[kept]
+    has_gains = told.own_exposures.on
+    config = replace(
+        config,
+        own_exposures="on" if has_gains else "off",
+        outlier_photos="on" if told.outliers else "off",
+    )
+    decisions: tuple[Decision, ...] = (told.own_exposures, told.outlier_photos)
     known = [source.own_exposures.get(photo.name, 1.0) for photo in learned]
-    exposures = Exposures(np.array(known)[:, None] * point_gains) if decision.on else Exposures(known)
-    if decision.on:
+    exposures = Exposures(np.array(known)[:, None] * point_gains) if has_gains else Exposures(known)
+    if has_gains:
         gains = np.exp(np.log(point_gains).mean(axis=1)) * known
         own = dict(zip([photo.name for photo in learned], gains.tolist(), strict=True))
         source = replace(source, own_exposures={**source.own_exposures, **own})

@@ -84,7 +84,7 @@ class Case:
         settings = asdict(config)
         if config.start_from == "surfaces":
             del settings["start_from"]  # as all did before there was a choice
-        for effect in ("own_exposures", "own_poses", "light_apart", "points_for_mesh"):
+        for effect in ("own_exposures", "outlier_photos", "own_poses", "light_apart", "points_for_mesh"):
             if settings[effect] == "auto":
                 del settings[effect]  # these scenes' photos are exposed alike and posed right, mirror images are clear
         if settings["overexposed"] in ("auto", "off"):

@@ -14,7 +14,7 @@ from reconstruction.light.photo_set import PanelPlanes, PhotoSet, read_photo_set
 from reconstruction.light.shading import display_from_linear
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.model.saved import read_model, save_model
-from reconstruction.training.photos.exposures import Exposures, fitted_gain, gains_from_points, own_exposures
+from reconstruction.training.photos.exposures import Exposures, fitted_gain, gains_from_points, told_by_points
 from reconstruction.training.train import train_model
 from tests.reconstruction.light.synthetic_folder import cameras
 from tests.reconstruction.training.synthetic_data_set import write_data_set
@@ -136,26 +136,32 @@ def painted(folder, gains):
     return PhotoSet(folder, photos, PanelPlanes(np.zeros((0, 4, 3))), 1.0, {})
 
 
+def exposed(source, *settings):
+    """Gains and their decision."""
+    told = told_by_points(source, source.photos, POINTS, empty_mesh(), *settings)
+    return told.gains, told.own_exposures
+
+
 def test_points_tell_gains_where_photos_were_exposed_one_by_one(tmp_path):
     source = painted(tmp_path, GAINS)
-    gains, decision = own_exposures(source, source.photos, POINTS, empty_mesh())
+    gains, decision = exposed(source)
     assert decision.on
     assert decision.size == pytest.approx(np.log(GAINS).std(axis=0).mean(), rel=0.15)
     true = np.log(GAINS) - np.log(GAINS).mean(axis=0)
     np.testing.assert_allclose(np.log(gains), true, atol=0.03)
     known = {photo.name: float(gain.mean()) for photo, gain in zip(source.photos, GAINS, strict=True)}
     told = replace(source, own_exposures=known)
-    _, of_rest = own_exposures(told, source.photos, POINTS, empty_mesh())
+    _, of_rest = exposed(told)
     assert of_rest.size < decision.size
 
 
 def test_nothing_is_told_where_photos_were_exposed_alike(tmp_path):
     source = painted(tmp_path, np.ones((N, 3)))
-    gains, decision = own_exposures(source, source.photos, POINTS, empty_mesh())
+    gains, decision = exposed(source)
     assert not decision.on
     assert decision.size < 0.02
     assert (gains == 1.0).all()
-    gains, decision = own_exposures(source, source.photos, POINTS, empty_mesh(), "on")
+    gains, decision = exposed(source, "on")
     assert decision.on
     np.testing.assert_allclose(gains, 1.0, atol=0.02)
 
@@ -164,9 +170,59 @@ def test_off_looks_at_no_photo(tmp_path):
     source = painted(tmp_path, GAINS)
     for photo in source.photos:
         photo.path.unlink()
-    gains, decision = own_exposures(source, source.photos, POINTS, empty_mesh(), "off")
+    gains, decision = exposed(source, "off", "off")
     assert not decision.on
     assert (gains == 1.0).all()
+
+
+def show_something_else(photo, pictures):
+    """Put another picture, linear light from 0 to 1, in the place of a photo's."""
+    display = display_from_linear(torch.from_numpy(pictures)).numpy()
+    cv2.imwrite(str(photo.path), np.rint(255.0 * display).astype(np.uint8)[..., ::-1])
+
+
+def patches(photo, seed):
+    """Something with as much contrast as the wall."""
+    lens = photo.intrinsics
+    noise = np.random.default_rng(seed).uniform(0.05, 0.5, (6, 8, 3))
+    return cv2.resize(noise, (lens.width_px, lens.height_px), interpolation=cv2.INTER_LINEAR)
+
+
+@pytest.mark.parametrize("what", ["even", "patches"])
+def test_a_photo_of_something_else_tells_no_gain_and_is_named(tmp_path, what):
+    """As one taken by accident, or from inside a building that the site does not know."""
+    source = painted(tmp_path, np.ones((N, 3)))
+    lens, other = source.photos[2].intrinsics, source.photos[2]
+    even = np.full((lens.height_px, lens.width_px, 3), 0.02)
+    show_something_else(other, even if what == "even" else 0.3 * patches(other, 5))
+    told = told_by_points(source, source.photos, POINTS, empty_mesh())
+    assert told.outliers == (2,)
+    assert told.outlier_photos.on
+    assert other.name in told.outlier_photos.reason
+    assert told.outlier_photos.size == pytest.approx(1 / N)
+    assert not told.own_exposures.on, "the others are exposed alike"
+    kept = told_by_points(source, source.photos, POINTS, empty_mesh(), outlier_photos="off")
+    assert kept.outliers == ()
+    assert not kept.own_exposures.on
+
+
+def test_where_many_photos_disagree_rather_the_points_are_wrong(tmp_path):
+    source = painted(tmp_path, np.ones((N, 3)))
+    for number in range(N):
+        show_something_else(source.photos[number], patches(source.photos[number], number))
+    assert told_by_points(source, source.photos, POINTS, empty_mesh()).outliers == ()
+
+
+def test_photos_of_the_place_are_no_outliers_however_they_were_exposed(tmp_path):
+    told = told_by_points(painted(tmp_path, GAINS**3), cameras(tmp_path, N), POINTS, empty_mesh())
+    assert told.outliers == ()
+    assert not told.outlier_photos.on
+    even = PhotoSet(tmp_path, cameras(tmp_path, N), PanelPlanes(np.zeros((0, 4, 3))), 1.0, {})
+    for number, photo in enumerate(even.photos):
+        lens = photo.intrinsics
+        noise = np.random.default_rng(number).normal(0.3, 0.01, (lens.height_px, lens.width_px, 3))
+        show_something_else(photo, noise.clip(0.0, 1.0))
+    assert told_by_points(even, even.photos, POINTS, empty_mesh()).outliers == (), "an even wall has nothing to tell by"
 
 
 def test_hidden_points_and_clipped_pixels_tell_nothing(tmp_path):
