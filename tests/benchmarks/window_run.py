@@ -109,8 +109,8 @@ def planning() -> dict[str, Any]:
 
     from groundstation.gui.window.project_controller import ProjectController
     from groundstation.services.project.document import Item, ItemKind
-    from planning import revision as edits
     from planning.request import PlanRequest
+    from planning.revision import edits
 
     application = QApplication(["reflight"])
     controller = ProjectController(application)

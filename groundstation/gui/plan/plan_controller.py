@@ -18,7 +18,6 @@ from groundstation.services.plan.plan_cache import ActivePlan, PlanCache, Prepar
 from groundstation.services.plan.planning import plan_document_site, with_local_site
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.project.input_files import read_input_plan
-from planning import revision as edits
 from planning.base.errors import GroundStationError
 from planning.base.findings import Severity
 from planning.base.messages import say
@@ -26,6 +25,7 @@ from planning.parameters import CameraSettings
 from planning.plan import Plan, Viewpoint
 from planning.planner import Planned
 from planning.request import PlanRequest
+from planning.revision import edits
 from planning.revision.edits import Revision
 from planning.site.records import SiteModel
 
