@@ -13,7 +13,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from groundstation.services.map.pmtiles import HEADER, tile_id
+from groundstation.services.map.tiles import HEADER, tile_id
 from groundstation.services.map.web_mercator import Tile, world_from_geodetic
 
 

@@ -10,9 +10,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.services.map.pmtiles import HEADER, MAX_DIRECTORY_BYTES, PmTiles, read_directory, tile_id
 from groundstation.services.map.tile_source import MAX_VECTOR_BYTES, gunzipped, unzstd
-from groundstation.services.map.tiles import MapTiles, open_map_file
+from groundstation.services.map.tiles import (
+    HEADER,
+    MAX_DIRECTORY_BYTES,
+    MapTiles,
+    PmTiles,
+    open_map_file,
+    read_directory,
+    tile_id,
+)
 from groundstation.services.map.varints import read_varints, zigzag
 from groundstation.services.map.vector_tiles import decode_vector_tile
 from groundstation.services.map.web_mercator import Tile
