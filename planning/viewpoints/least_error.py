@@ -2,27 +2,34 @@
 
 What is expected of pictures is said by `planning.coverage.image_error`.
 
-Greedy choice reaches 1 - 1/e of what the best set of the same candidates takes off the expected error, since what
-views take off it is monotone and submodular; f(S) and the N largest gains beside any S bound that from above.
+With amounts a_ij >= 0 of what view i shows of element j and weights w_j, the sets S of views are worth
+
+    f(S) = sum_j w_j A_j / (1 + A_j),   A_j = sum of a_ij over i in S,
+
+monotone and submodular, since x / (1 + x) rises and is concave. Greedy choice reaches 1 - 1/e of what the best set of
+the same candidates takes off the expected error; f(S) and the N largest gains beside any S bound that from above. Gains
+only fall while views are added, so an old gain is an upper bound: greedy looks again at few of them (M. Minoux, 1978).
 """
 
 from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.effects import Assessment, Decision, EffectSetting, decide
+from planning.base.jit import kernel
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.coverage.image_error import COLUMNS, FLOOR, ROWS, TERMS, ImageErrorModel, decibels
 from planning.coverage.mirrored_rays import Surroundings
 from planning.plan import BatteryWorth, Camera, FlightWorth, Plan, ViewpointArrays, viewpoint_arrays
 from planning.site.records import SiteModel
-from planning.viewpoints import error_kernel as kernel
 from planning.viewpoints.candidates import spread_candidates
+from planning.viewpoints.cover_kernel import is_too_close
 from planning.viewpoints.problem import NONE_LOCKED, ViewProblem, concatenate, take
 from planning.viewpoints.spacing import ANYWHERE, SpacingRule
 from planning.viewpoints.unseen import even_views, random_views, walk_views
@@ -45,6 +52,9 @@ DEVIATION_DB = 0.75
 
 SLICE = 16
 """Views chosen between two looks at the clock, at least."""
+
+NO_GAIN = 1e-12
+"""Of all weights together: gains up to it are rounding."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -114,16 +124,101 @@ def image_error_model(
     return (model.after(photos) if len(photos.heading_rad) else model), decision
 
 
+class ErrorState(NamedTuple):
+    """Candidates, what they show, and what is chosen so far.
+
+    Parameters
+    ----------
+    starts, items, amounts
+        Elements that each candidate shows, `items[starts[i]:starts[i + 1]]`, and how much of each, above 0.
+    weights
+        Of each element.
+    sums
+        A: what is shown of each element.
+    bounds
+        Upper bounds of the candidates' gains.
+    positions, taken, spacing
+        As those of `cover_kernel.CoverState`.
+    """
+
+    starts: NDArray[np.int64]
+    items: NDArray[np.int32]
+    amounts: NDArray[np.float32]
+    weights: NDArray[np.float64]
+    sums: NDArray[np.float64]
+    bounds: NDArray[np.float64]
+    positions: NDArray[np.float64]
+    taken: NDArray[np.float64]
+    spacing: float
+
+
+@kernel
+def gain_of(state: ErrorState, candidate: int) -> float:
+    """How much f grows with a candidate."""
+    gain = 0.0
+    for i in range(state.starts[candidate], state.starts[candidate + 1]):
+        j, amount = state.items[i], float(state.amounts[i])
+        before = 1.0 + state.sums[j]
+        gain += state.weights[j] * amount / (before * (before + amount))
+    return gain
+
+
+@kernel
+def add_or_remove(state: ErrorState, candidate: int, sign: float) -> None:
+    """Add a candidate (`sign` 1) or take it away (-1); bounds hold only while candidates are added."""
+    for i in range(state.starts[candidate], state.starts[candidate + 1]):
+        j = state.items[i]
+        state.sums[j] = max(0.0, state.sums[j] + sign * float(state.amounts[i]))
+
+
+@kernel
+def error_taken(state: ErrorState) -> float:
+    """F of what is chosen."""
+    total = 0.0
+    for j in range(len(state.weights)):
+        total += state.weights[j] * state.sums[j] / (1.0 + state.sums[j])
+    return total
+
+
+@kernel
+def fill_gains(state: ErrorState, gains: NDArray[np.float64]) -> None:
+    """Write the gains of all candidates; as the state's own bounds they are exact for a while."""
+    for candidate in range(len(gains)):
+        gains[candidate] = gain_of(state, candidate)
+
+
+@kernel
+def greedy_steps(state: ErrorState, chosen: NDArray[np.int64], n_chosen: int, n_wanted: int) -> int:
+    """Add the candidate of the largest gain until `n_wanted` are chosen or nothing is gained.
+
+    None is chosen twice: its bound is minus infinity from then on. So is that of one too close to another.
+    """
+    least = NO_GAIN * state.weights.sum()
+    while n_chosen < n_wanted:
+        best, looked_at = int(np.argmax(state.bounds)), -1
+        while best != looked_at and state.bounds[best] > least:
+            state.bounds[best] = gain_of(state, best)
+            looked_at, best = best, int(np.argmax(state.bounds))
+        if state.bounds[best] <= least:
+            break
+        state.bounds[best] = -np.inf
+        if not is_too_close(state, best, chosen, n_chosen, -1):
+            add_or_remove(state, best, 1.0)
+            chosen[n_chosen] = best
+            n_chosen += 1
+    return n_chosen
+
+
 def error_state(
     model: ImageErrorModel,
     views: ViewpointArrays,
     locked: ViewpointArrays = NONE_LOCKED,
     spacing: SpacingRule = ANYWHERE,
-) -> kernel.ErrorState:
+) -> ErrorState:
     """Candidates with nothing chosen yet; what `locked` views show is known all the same."""
     shown, present = model.shown(views), model.shown(locked)
     n = len(views.heading_rad)
-    state = kernel.ErrorState(
+    state = ErrorState(
         *shown,
         weights=model.weights,
         sums=np.bincount(present.items, present.amounts, model.n_elements).astype(np.float64),
@@ -132,60 +227,60 @@ def error_state(
         taken=np.array(spacing.present_enu_m, np.float64, order="C").reshape(-1, 3),
         spacing=float(spacing.spacing_m),
     )
-    kernel.fill_gains(state, state.bounds)
+    fill_gains(state, state.bounds)
     return state
 
 
-def choose_for_least_error(state: kernel.ErrorState, n_wanted: int, monitor: Monitor) -> NDArray[np.int64]:
+def choose_for_least_error(state: ErrorState, n_wanted: int, monitor: Monitor) -> NDArray[np.int64]:
     """Numbers of candidates chosen greedily, in order, at most `n_wanted`; the state holds them afterwards."""
     chosen, n_chosen = np.zeros(min(n_wanted, len(state.bounds)), np.int64), 0
     while n_chosen < len(chosen):
         monitor.report(say("choosing views"), n_chosen, len(chosen))
         slice_end = min(len(chosen), n_chosen + SLICE)
-        n_now = int(kernel.greedy_steps(state, chosen, n_chosen, slice_end))
+        n_now = int(greedy_steps(state, chosen, n_chosen, slice_end))
         if n_now < slice_end:
             return chosen[:n_now]
         n_chosen = n_now
     return chosen
 
 
-def least_error(state: kernel.ErrorState, model: ImageErrorModel, n_more: int) -> float:
+def least_error(state: ErrorState, model: ImageErrorModel, n_more: int) -> float:
     """No `n_more` further candidates leave less expected error than this, whatever the state holds.
 
     Gains fall while views are added (submodularity), so the largest ones at this state bound what any views add.
     """
     gains = np.zeros(len(state.bounds))
-    kernel.fill_gains(state, gains)
-    left = model.most_error - float(kernel.value(state))
+    fill_gains(state, gains)
+    left = model.most_error - float(error_taken(state))
     return max(model.floor, left - float(np.sort(gains)[::-1][: max(0, n_more)].sum()))
 
 
 class ErrorGain:
     """Worth of a set of candidates: the expected error that they take away (`CoverageGain` of the routing)."""
 
-    def __init__(self, state: kernel.ErrorState) -> None:
+    def __init__(self, state: ErrorState) -> None:
         self._state, self._is_fresh = state, True
 
     @property
     def value(self) -> float:
         """Mean square error taken away."""
-        return float(kernel.value(self._state))
+        return float(error_taken(self._state))
 
     def marginals(self) -> NDArray[np.float64]:
         """What each candidate would take away beside those in the set, shape (n,)."""
         if not self._is_fresh:
-            kernel.fill_gains(self._state, self._state.bounds)
+            fill_gains(self._state, self._state.bounds)
             self._is_fresh = True
         return self._state.bounds
 
     def add(self, candidate: int) -> None:
         """Put a candidate into the set."""
-        kernel.change(self._state, candidate, 1.0)
+        add_or_remove(self._state, candidate, 1.0)
         self._is_fresh = False
 
     def remove(self, candidate: int) -> None:
         """Take a candidate out of the set."""
-        kernel.change(self._state, candidate, -1.0)
+        add_or_remove(self._state, candidate, -1.0)
         self._is_fresh = False
 
 

@@ -25,14 +25,18 @@ from planning.request import PlanRequest
 from planning.routing.flights import Flight
 from planning.site.bundled import SCENES
 from planning.site.records import panel_corners
-from planning.viewpoints import error_kernel as kernel
 from planning.viewpoints.budget import best_flights
 from planning.viewpoints.candidates import candidate_pool, spread_candidates
 from planning.viewpoints.least_error import (
     ErrorGain,
+    ErrorState,
+    add_or_remove,
     choose_for_least_error,
     error_state,
+    error_taken,
+    fill_gains,
     flight_worth,
+    gain_of,
     image_error_model,
     least_error,
 )
@@ -66,7 +70,7 @@ def candidates(name: str = "single-panel", n: int = 300) -> ViewpointArrays:
 
 
 @st.composite
-def made_states(draw: st.DrawFn) -> kernel.ErrorState:
+def made_states(draw: st.DrawFn) -> ErrorState:
     """A few candidates that show a few elements, much or next to nothing of them."""
     n, m = draw(st.integers(1, 8)), draw(st.integers(1, 12))
     rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
@@ -76,12 +80,12 @@ def made_states(draw: st.DrawFn) -> kernel.ErrorState:
     starts = np.concatenate([[0], np.cumsum([len(row) for row in rows])]).astype(np.int64)
     weights = 10.0 ** rng.uniform(-8.0, 2.0, m)
     nowhere = np.zeros((n, 3))
-    state = kernel.ErrorState(starts, items, amounts, weights, np.zeros(m), np.zeros(n), nowhere, np.zeros((0, 3)), 0.0)
-    kernel.fill_gains(state, state.bounds)
+    state = ErrorState(starts, items, amounts, weights, np.zeros(m), np.zeros(n), nowhere, np.zeros((0, 3)), 0.0)
+    fill_gains(state, state.bounds)
     return state
 
 
-def value_of(state: kernel.ErrorState, chosen: set[int]) -> float:
+def value_of(state: ErrorState, chosen: set[int]) -> float:
     """f of a set by its definition, in double precision."""
     sums = np.zeros(len(state.weights))
     for each in chosen:
@@ -109,16 +113,16 @@ def test_gains_and_values_are_those_of_the_definition(state, steps):
     for step in steps:
         candidate = step % len(state.bounds)
         if candidate in chosen:
-            kernel.change(state, candidate, -1.0)
+            add_or_remove(state, candidate, -1.0)
             chosen.remove(candidate)
         else:
-            gain = kernel.gain_of(state, candidate)
+            gain = gain_of(state, candidate)
             assert gain == pytest.approx(
                 value_of(state, chosen | {candidate}) - value_of(state, chosen), rel=1e-6, abs=1e-9 * scale
             )
-            kernel.change(state, candidate, 1.0)
+            add_or_remove(state, candidate, 1.0)
             chosen.add(candidate)
-        assert kernel.value(state) == pytest.approx(value_of(state, chosen), rel=1e-6, abs=1e-9 * scale)
+        assert error_taken(state) == pytest.approx(value_of(state, chosen), rel=1e-6, abs=1e-9 * scale)
 
 
 @given(made_states(), st.integers(1, 5))
@@ -145,7 +149,7 @@ def test_greedy_is_within_its_own_bound_and_far_above_drawn_views():
     state = error_state(error, views)
     chosen = choose_for_least_error(state, 10, QUIET)
     left = error.expected_error(take(views, chosen))
-    assert left == pytest.approx(error.most_error - kernel.value(state), rel=1e-6)
+    assert left == pytest.approx(error.most_error - error_taken(state), rel=1e-6)
     fresh = error_state(error, views)
     assert error.floor <= max(least_error(fresh, error, 10), least_error(state, error, 10)) <= left
     rng = np.random.default_rng(0)
@@ -276,7 +280,7 @@ def test_views_stand_apart_and_locked_ones_are_not_shown_again():
     assert apart[~np.eye(len(chosen), dtype=bool)].min() >= 5.0
     locked = take(views, chosen[:4])
     state = error_state(error, views, locked)
-    assert error.most_error - kernel.value(state) == pytest.approx(error.expected_error(locked), rel=1e-6)
+    assert error.most_error - error_taken(state) == pytest.approx(error.expected_error(locked), rel=1e-6)
 
 
 def test_the_gain_of_the_routing_falls_and_rises_with_the_set():
