@@ -24,10 +24,9 @@ from PySide6.QtWidgets import (
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.map.map_view import MapView
-from groundstation.gui.mission.export_dialog import ExportDialog
+from groundstation.gui.mission.export_dialog import ExportDialog, SendDialog
 from groundstation.gui.mission.mission_controller import MissionController, Proved
 from groundstation.gui.mission.mission_lists import MissionLists, SortieTable
-from groundstation.gui.mission.send_dialog import SendDialog
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.findings_list import SIZE_PX, FindingsList, severity_icon
 from groundstation.gui.widgets.inputs import NumberBox, calm, moment_of

@@ -28,7 +28,7 @@ def devices(tmp_path, monkeypatch):
 
 
 def dialog_of(page, idle, context, planned):  # noqa: F811
-    from groundstation.gui.mission.send_dialog import SendDialog
+    from groundstation.gui.mission.export_dialog import SendDialog
 
     context.session.open(opened(planned), None)
     idle()
