@@ -110,7 +110,7 @@ READERS = {
     "reconstruction/objects/organise.py", "groundstation/services/reconstruct/choices.py",
     "groundstation/gui/application/collect_messages.py", "groundstation/services/messages.py",
     "groundstation/services/fly/flying.py", "groundstation/cli/commands/tradeoff.py",
-    "groundstation/services/project/sample.py", "groundstation/gui/window/manual.py",
+    "groundstation/services/project/sample.py", "groundstation/gui/window/help.py",
     "groundstation/services/mission/proof.py",
     # Shares nothing with the rest, so that it can be read alone.
     "planning/proof/reflight_verify.py",

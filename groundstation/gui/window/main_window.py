@@ -44,7 +44,7 @@ BOTTOM_HEIGHT_PX = 190
 
 
 if TYPE_CHECKING:
-    from groundstation.gui.window.manual import ManualWindow
+    from groundstation.gui.window.help import ManualWindow
 
 STEPS = frozenset(Step)
 
@@ -161,7 +161,7 @@ class MainWindow(QMainWindow):
     def open_manual(self, place: str = "") -> None:
         """Show the manual, at a page where one is wanted."""
         if self._manual is None:
-            from groundstation.gui.window.manual import ManualWindow
+            from groundstation.gui.window.help import ManualWindow
 
             self._manual = ManualWindow(self._context, self)
         self._manual.open_page(*([place] if place else []))

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, QTimer, Signal
 from PySide6.QtGui import QCloseEvent
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.interpreter import GarbageCollector, leave_modules_alone, take_short_turns
@@ -25,6 +25,7 @@ from groundstation.gui.start_page import StartPage
 from groundstation.gui.widgets.icons import tint_all
 from groundstation.gui.widgets.questions import Answer, Questions, file_name
 from groundstation.gui.widgets.theme import apply_theme
+from groundstation.gui.window.help import Stop, Tour
 from groundstation.gui.window.main_window import MainWindow
 from groundstation.gui.window.menus import Menus
 from groundstation.services.jobs.runner import JobRunner
@@ -121,9 +122,7 @@ class ProjectController(QObject):
 
     def take_tour(self) -> None:
         """Show the window part by part."""
-        from groundstation.gui.window.tour import Tour, stops_of
-
-        Tour(self.window, stops_of(self.window)).begin()
+        Tour(self.window, _stops_of(self.window)).begin()
 
     def _answer_tour(self, is_wanted: bool) -> None:
         """Take the tour or not; it is not offered again."""
@@ -547,3 +546,49 @@ def start_page_of(window: MainWindow) -> StartPage:
 
 def _first_document(settings: Settings) -> Document:
     return Document(request=PlanRequest(profile_id=settings.default_profile))
+
+
+def _stops_of(window: MainWindow) -> tuple[Stop, ...]:
+    """What the tour shows, in order."""
+    translate = QCoreApplication.translate
+
+    def on_tab(name: str, part: QWidget) -> Callable[[], QWidget]:
+        def found() -> QWidget:
+            if window.shown_tab() != name:
+                window.show_tab(name)
+            return part
+
+        return found
+
+    return (
+        Stop(
+            translate("Tour", "Where to begin"),
+            translate("Tour", "The sample project has every step done: look around in it, nothing can break."),
+            on_tab("start", window.tab("start").left),
+        ),
+        Stop(
+            translate("Tour", "Seven steps"),
+            translate("Tour", "They stand in the order of the work. A tick says that a step is done."),
+            on_tab("start", window.tab_bar()),
+        ),
+        Stop(
+            translate("Tour", "What comes next"),
+            translate("Tour", "This line says what is done and what comes next. The blue button leads there."),
+            on_tab("site", window.next_step),
+        ),
+        Stop(
+            translate("Tour", "The view"),
+            translate("Tour", "The site in 3-D, on the map, or as a camera will see it. Drag to turn, wheel to zoom."),
+            on_tab("site", window.shared_view),
+        ),
+        Stop(
+            translate("Tour", "Help"),
+            translate("Tour", "The manual's page of this tab. A “?” beside a word says what it means."),
+            on_tab("site", window.next_step.help),
+        ),
+        Stop(
+            translate("Tour", "Messages"),
+            translate("Tour", "What holds now, and all that was told. What runs stands beside it, with its time."),
+            on_tab("site", window.messages),
+        ),
+    )

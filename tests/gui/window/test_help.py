@@ -74,7 +74,7 @@ def test_the_manual_follows_links_goes_back_searches_and_shows_pictures(applicat
 
 
 def test_the_tour_is_offered_once_goes_through_the_window_and_can_be_left(application, window):
-    from groundstation.gui.window.tour import Tour
+    from groundstation.gui.window.help import Tour
 
     press_in(window, "Take the tour")
     tour = window.findChild(Tour)

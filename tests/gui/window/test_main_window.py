@@ -242,7 +242,7 @@ SECTIONS = {
     "reconstruct/model_view.py": ("Models",),
     "window/main_window.py": ("Buttons",),
     "window/message_area.py": ("Messages",),
-    "window/tour.py": ("Tour",),
+    "window/help.py": ("Tour",),
 }
 """Sections of the list of keys that tell of the keys that a module takes by itself."""
 
