@@ -22,6 +22,7 @@ from PySide6.QtWidgets import (
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.application.gradual import GradualTab
 from groundstation.gui.application.translate import translated
+from groundstation.gui.fly.after_flight import LogBookDialog
 from groundstation.gui.fly.connection_box import ConnectionBox
 from groundstation.gui.fly.fleet_box import FleetBox, FleetTexts
 from groundstation.gui.fly.flight_buttons import APART_PX, FlightButtons, PreflightList
@@ -31,7 +32,6 @@ from groundstation.gui.fly.fly_controller import BEFORE_FLIGHT, FlyController
 from groundstation.gui.fly.joystick_controller import JoystickController
 from groundstation.gui.fly.live_aircraft import ActiveFlight
 from groundstation.gui.fly.live_pictures import LivePictures, PhotoStrip, ScrolledStrip
-from groundstation.gui.fly.log_book_dialog import LogBookDialog
 from groundstation.gui.fly.questions import FlightQuestions
 from groundstation.gui.fly.readouts_view import ReadoutsView, ReportView
 from groundstation.gui.fly.simulation_controller import SimulationPage

@@ -1,8 +1,16 @@
-"""What the pilot reads: in flight at a glance, in large figures, and afterwards as a report of every view."""
+"""What the pilot reads: in flight at a glance, in large figures, and afterwards as a report of every view.
+
+Figures, attitude and heading that lie over the view are painted on opaque plates, to be read at arm's length.
+"""
 
 from __future__ import annotations
 
-from PySide6.QtCore import QModelIndex, Qt, Signal
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from PySide6.QtCore import QModelIndex, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import (
     QFrame,
     QGridLayout,
@@ -18,12 +26,339 @@ from PySide6.QtWidgets import (
 from groundstation.gui.widgets.scrolling import scrolled
 from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.gui.widgets.table_view import Column, RowModel, table_of
-from groundstation.services.fly.events import FlightEnded, LiveView, PhotoCounted, Readouts, ViewState
+from groundstation.gui.widgets.theme import colours
+from groundstation.services.fly.events import FlightEnded, LinkState, LiveView, PhotoCounted, Readouts, ViewState
 from groundstation.services.units import UnitSystem, length_unit, minutes_text, per_cent, speed_unit
 from groundstation.vehicle.preflight import FIX_NAMES
+from groundstation.vehicle.state import Angles
 from missions.flight.outcome import FlightReport, Reason, ViewOutcome
 
 UNKNOWN = "-"
+
+# The figures: one below the other, the two that keep the aircraft off things largest.
+
+LARGE, USUAL = 1.5, 1.0
+"""Shares of the height that rows get."""
+
+LEAST_ROW_PX = 34.0
+"""Of a row of usual size; where rows would be lower, the last are left out."""
+
+MOST_ROW_PX = 84.0
+FIGURE_PART = 0.60
+"""Of a row's height that its figure takes; the caption has the rest."""
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A row: what it is, its value, a note behind what it is, and the severity of a warning about it, or empty."""
+
+    name: str
+    caption: str
+    value: str
+    note: str = ""
+    role: str = ""
+    share: float = USUAL
+
+
+class FlightFigures(QWidget):
+    """Height, distance, speed, battery, time to go, next photo and wind, in this order."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.setAccessibleName(self.tr("Flight figures"))
+        self._units = UnitSystem.METRIC
+        self._view: LiveView | None = None
+        self._figures: tuple[Figure, ...] = ()
+        self._widest_px = 0
+        self._is_old = False
+        self._find()
+
+    def set_view(self, view: LiveView | None) -> None:
+        """Show a flight as it stands."""
+        self._view = view
+        self._find()
+
+    def set_units(self, units: UnitSystem) -> None:
+        """Show lengths and speeds in other units."""
+        self._units = units
+        self._find()
+
+    def text(self) -> str:
+        """Everything that is shown, a line for each figure."""
+        return "\n".join(f"{_line(each)}: {each.value}" for each in self._figures)
+
+    def sizeHint(self) -> QSize:  # noqa: N802
+        """As wide as the longest caption, as high as rows of full size."""
+        shares = sum(each.share for each in self._figures)
+        return QSize(self._widest_px, round(MOST_ROW_PX * shares))
+
+    def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802
+        """Paint the rows that have room."""
+        painter, look = QPainter(self), colours()
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.fillRect(self.rect(), QColor(look.base))
+        shown = list(self._figures)
+        while len(shown) > 1 and self.height() < LEAST_ROW_PX * sum(each.share for each in shown):
+            shown.pop()
+        unit_px = min(MOST_ROW_PX, self.height() / sum(each.share for each in shown))
+        top = 0.0
+        for figure in shown:
+            room = QRectF(0.0, top, self.width(), unit_px * figure.share)
+            self._paint_row(painter, figure, room)
+            top = room.bottom()
+        painter.setPen(QPen(QColor(look.line), 1.0))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5))
+        painter.end()
+
+    def _paint_row(self, painter: QPainter, figure: Figure, room: QRectF) -> None:
+        look = colours()
+        ground = {"error": look.error, "warning": look.warning}.get(figure.role)
+        ink = QColor(look.base if ground else look.muted if self._is_old else look.text)
+        if ground:
+            painter.fillRect(room.adjusted(1.0, 1.0, -1.0, 0.0), QColor(ground))
+        inner = room.adjusted(8.0, 1.0, -6.0, -2.0)
+        font = fitting_font(self.font(), figure.value, inner.width(), FIGURE_PART * room.height())
+        painter.setFont(font)
+        painter.setPen(ink)
+        high = QFontMetricsF(font).height()
+        painter.drawText(
+            QRectF(inner.left(), inner.top(), inner.width(), high), Qt.AlignmentFlag.AlignLeft, figure.value
+        )
+        caption = QFont(self.font())
+        caption.setPixelSize(max(9, int(min(QFontMetricsF(self.font()).height(), room.height() - 0.9 * high) / 1.25)))
+        painter.setFont(caption)
+        painter.setPen(ink if ground else QColor(look.muted))
+        text = _line(figure)
+        metrics = QFontMetricsF(caption)
+        place = QRectF(inner.left(), inner.top() + high - 0.1 * high, inner.width(), metrics.height())
+        shown = metrics.elidedText(text, Qt.TextElideMode.ElideRight, inner.width())
+        painter.drawText(place, Qt.AlignmentFlag.AlignLeft, shown)
+        painter.setPen(QPen(QColor(look.line), 1.0))
+        painter.drawLine(room.bottomLeft(), room.bottomRight())
+
+    def _find(self) -> None:
+        view = self._view
+        was_old, self._is_old = self._is_old, view is not None and view.link is LinkState.LOST
+        found = self._now(view)
+        if found != self._figures or was_old is not self._is_old:
+            self._figures = found
+            metrics = QFontMetricsF(self.font())
+            # It never becomes narrower again: figures that move are not read.
+            self._widest_px = max(
+                self._widest_px, *(round(metrics.horizontalAdvance(_line(each))) + 20 for each in self._figures)
+            )
+            self.update()
+
+    def _now(self, view: LiveView | None) -> tuple[Figure, ...]:
+        shown = Readouts() if view is None else view.readouts
+        roles = {} if view is None else {warning.code: warning.severity.value for warning in view.warnings}
+        length, speed = length_unit(self._units), speed_unit(self._units)
+        least = self.tr("min {0}").format(length.text(shown.least_facade_m)) if shown.least_facade_m > 0.0 else ""
+        left = (
+            "" if shown.battery_left_s is None else self.tr("reserve in {0}").format(minutes_text(shown.battery_left_s))
+        )
+        wind_from = "" if not shown.wind_m_s or shown.wind_from_deg is None else f"{shown.wind_from_deg:.0f}°"
+        percent = UNKNOWN if shown.battery is None else f"{shown.battery:.0%}"
+        return (
+            Figure(
+                "height",
+                self.tr("above ground"),
+                _text(length.text, shown.above_ground_m),
+                role=roles.get("airspace", ""),
+                share=LARGE,
+            ),
+            Figure(
+                "facade",
+                self.tr("to the facade"),
+                _text(length.text, shown.facade_m),
+                least,
+                roles.get("facade-distance", ""),
+                LARGE,
+            ),
+            Figure("speed", self.tr("speed"), _text(speed.text, shown.speed_m_s), role=roles.get("off-path", "")),
+            Figure("battery", self.tr("battery"), percent, left, roles.get("battery", "")),
+            Figure("to-go", self.tr("to go"), _text(minutes_text, shown.to_go_s)),
+            self._photo(view, shown),
+            Figure("wind", self.tr("wind"), _text(speed.text, shown.wind_m_s), wind_from, roles.get("wind", "")),
+        )
+
+    def _photo(self, view: LiveView | None, shown: Readouts) -> Figure:
+        """Which photo comes next, of how many, and when."""
+        states = () if view is None else tuple(state for _, state in view.view_states)
+        following = next((n for n, state in enumerate(states, 1) if state is ViewState.NEXT), None)
+        n_missing = sum(state is ViewState.MISSING for state in states)
+        value = UNKNOWN if not states else f"{len(states) if following is None else following}/{len(states)}"
+        note = "" if shown.next_photo_s is None else self.tr("in {0}").format(minutes_text(shown.next_photo_s))
+        if n_missing:
+            note = self.tr("{0} missing").format(n_missing)
+        caption = self.tr("next photo") if following is not None or not states else self.tr("all photos")
+        return Figure("photo", caption, value, note, "warning" if n_missing else "")
+
+
+def fitting_font(font: QFont, text: str, width_px: float, height_px: float) -> QFont:
+    """A bold font for a text in so much room, as large as it can be."""
+    found = QFont(font)
+    found.setBold(True)
+    size = max(9, int(height_px / 1.17))
+    found.setPixelSize(size)
+    wide = QFontMetricsF(found).horizontalAdvance(text)
+    if wide > width_px > 0.0:
+        found.setPixelSize(max(9, int(size * width_px / wide)))
+    return found
+
+
+def _line(figure: Figure) -> str:
+    return f"{figure.caption}, {figure.note}" if figure.note else figure.caption
+
+
+def _text(worded: Callable[[float], str], value: float | None) -> str:
+    return UNKNOWN if value is None else worded(value)
+
+
+# Attitude and heading.
+
+SKY, GROUND, INK = "#1f6fb2", "#6b4423", "#ffffff"
+"""As on every artificial horizon; white on either has a contrast of more than 5 : 1."""
+
+PITCH_PX_PER_DEG = 2.2
+TAPE_DEG = 90.0
+"""Width of the heading tape."""
+
+TAPE_PX = 40
+LETTERS = {0: "N", 45: "NE", 90: "E", 135: "SE", 180: "S", 225: "SW", 270: "W", 315: "NW"}
+
+
+class AttitudeView(QWidget):
+    """A heading tape above an artificial horizon: nose and wings of the aircraft, and where the camera points."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.setAccessibleName(self.tr("Attitude and heading"))
+        self._attitude: Angles | None = None
+        self._camera: Angles | None = None
+        self._is_old = False
+
+    def set_angles(self, attitude: Angles | None, camera: Angles | None, *, is_old: bool = False) -> None:
+        """Show others."""
+        if (attitude, camera, is_old) != (self._attitude, self._camera, self._is_old):
+            self._attitude, self._camera, self._is_old = attitude, camera, is_old
+            self.update()
+
+    def text(self) -> str:
+        """Heading, pitch and roll, in degrees; empty where nothing is known."""
+        found = self._attitude
+        if found is None:
+            return ""
+        heading, pitch, roll = (math.degrees(value) for value in (found.heading_rad, found.pitch_rad, found.roll_rad))
+        return self.tr("heading {0:03.0f}°, pitch {1:+.0f}°, roll {2:+.0f}°").format(round(heading) % 360, pitch, roll)
+
+    def sizeHint(self) -> QSize:  # noqa: N802
+        """Tape and horizon."""
+        return QSize(200, TAPE_PX + 150)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802
+        """Paint both."""
+        painter, look = QPainter(self), colours()
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.fillRect(self.rect(), QColor(look.base))
+        self._paint_horizon(painter, QRectF(0.0, TAPE_PX, self.width(), self.height() - TAPE_PX))
+        self._paint_tape(painter, QRectF(0.0, 0.0, self.width(), TAPE_PX))
+        painter.setPen(QPen(QColor(look.line), 1.0))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5))
+        painter.end()
+
+    def _paint_tape(self, painter: QPainter, room: QRectF) -> None:
+        look, found = colours(), self._attitude
+        painter.save()
+        painter.setClipRect(room)
+        painter.fillRect(room, QColor(look.base))
+        font = QFont(self.font())
+        font.setPixelSize(13)
+        font.setBold(True)
+        painter.setFont(font)
+        if found is not None:
+            heading = math.degrees(found.heading_rad) % 360.0
+            px_per_deg, middle = room.width() / TAPE_DEG, room.center().x()
+            first = 15 * math.ceil((heading - TAPE_DEG / 2.0) / 15.0)
+            for mark in range(first - 15, round(heading + TAPE_DEG / 2.0) + 16, 15):
+                x = middle + (mark - heading) * px_per_deg
+                painter.setPen(QPen(QColor(look.text), 1.5))
+                painter.drawLine(QPointF(x, room.top()), QPointF(x, room.top() + 6.0))
+                text = LETTERS.get(mark % 360, f"{mark % 360:03d}")
+                painter.drawText(QRectF(x - 20, room.top() + 6, 40, 16), Qt.AlignmentFlag.AlignCenter, text)
+            if self._camera is not None:
+                off = (math.degrees(self._camera.heading_rad) - heading + 180.0) % 360.0 - 180.0
+                x = min(max(middle + off * px_per_deg, room.left() + 6.0), room.right() - 6.0)
+                painter.setPen(Qt.PenStyle.NoPen)
+                painter.setBrush(QColor(look.accent))
+                painter.drawPolygon(QPolygonF([QPointF(x, 30), QPointF(x - 6, 39), QPointF(x + 6, 39)]))
+            box = QRectF(middle - 24.0, room.top(), 48.0, 26.0)
+            painter.setPen(QPen(QColor(look.text), 2.0))
+            painter.setBrush(QColor(look.base))
+            painter.drawRect(box)
+            font.setPixelSize(20)
+            painter.setFont(font)
+            painter.setPen(QColor(look.muted if self._is_old else look.text))
+            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, f"{round(heading) % 360:03d}")
+        else:
+            painter.setPen(QColor(look.muted))
+            painter.drawText(room, Qt.AlignmentFlag.AlignCenter, UNKNOWN)
+        painter.restore()
+
+    def _paint_horizon(self, painter: QPainter, room: QRectF) -> None:
+        look, found = colours(), self._attitude
+        radius = 0.5 * min(room.width(), room.height()) - 5.0
+        centre = room.center()
+        circle = QPainterPath()
+        circle.addEllipse(centre, radius, radius)
+        painter.save()
+        painter.setClipPath(circle)
+        if found is None or self._is_old:
+            painter.fillRect(room, QColor(look.handle))
+        if found is not None:
+            painter.translate(centre)
+            painter.rotate(-math.degrees(found.roll_rad))
+            drop = math.degrees(found.pitch_rad) * PITCH_PX_PER_DEG
+            if not self._is_old:
+                painter.fillRect(QRectF(-2 * radius, -4 * radius + drop, 4 * radius, 4 * radius), QColor(SKY))
+                painter.fillRect(QRectF(-2 * radius, drop, 4 * radius, 4 * radius), QColor(GROUND))
+            painter.setPen(QPen(QColor(INK if not self._is_old else look.muted), 2.0))
+            painter.drawLine(QPointF(-2 * radius, drop), QPointF(2 * radius, drop))
+            for pitch_deg in (-20, -10, 10, 20):
+                y = drop - pitch_deg * PITCH_PX_PER_DEG
+                painter.drawLine(QPointF(-14.0, y), QPointF(14.0, y))
+        painter.restore()
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(QPen(QColor(look.text), 2.0))
+        painter.drawEllipse(centre, radius, radius)
+        # The aircraft itself: fixed, as the pilot sits in it.
+        for colour, width in ((QColor("#000000"), 6.0), (QColor("#ffd400"), 3.5)):
+            painter.setPen(QPen(colour, width))
+            for side in (-1.0, 1.0):
+                painter.drawLine(
+                    QPointF(centre.x() + side * 0.25 * radius, centre.y()),
+                    QPointF(centre.x() + side * 0.6 * radius, centre.y()),
+                )
+            painter.drawPoint(centre)
+        if self._camera is not None:
+            self._paint_camera(painter, room, math.degrees(self._camera.pitch_rad))
+
+    def _paint_camera(self, painter: QPainter, room: QRectF, pitch_deg: float) -> None:
+        """The gimbal's pitch, as a figure in the corner."""
+        look = colours()
+        font = QFont(self.font())
+        font.setPixelSize(13)
+        painter.setFont(font)
+        text = self.tr("cam {0:+.0f}°").format(pitch_deg)
+        size = QFontMetricsF(font).size(0, text)
+        box = QRectF(room.left() + 4.0, room.bottom() - size.height() - 4.0, size.width() + 8.0, size.height() + 2.0)
+        painter.fillRect(box, QColor(look.base))
+        painter.setPen(QColor(look.accent))
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
 
 
 # The flight report: what was achieved in figures, every view with its photo or the reason why it has none.

@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QImage, QPainter
 
 from groundstation.gui.fly.aircraft_shape import aircraft_drawables, body_axes, paint_aircraft
 from groundstation.gui.fly.flight_overlay import WarningBanner
-from groundstation.gui.fly.instruments import AttitudeView, FlightFigures
+from groundstation.gui.fly.readouts_view import AttitudeView, FlightFigures
 from groundstation.gui.widgets.theme import LIGHT
 from groundstation.services.fly.announce import aged_warnings, ordered_warnings
 from groundstation.services.fly.events import LinkState, LiveView, Readouts, ViewState

@@ -8,8 +8,8 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
+from groundstation.gui.fly.flight_overlay import MOVED_M, LiveCamera
 from groundstation.gui.fly.flight_settings_page import SettingsPage
-from groundstation.gui.fly.live_camera import MOVED_M, LiveCamera
 from groundstation.gui.view3d.canvas import image_array
 from groundstation.services.fly.options import FlightSettings
 from groundstation.services.fly.video_offer import OfferedVideo, VideoFinder

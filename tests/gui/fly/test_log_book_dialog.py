@@ -15,7 +15,7 @@ from tests.services.fly.test_log_book import ENTRY
 @pytest.fixture
 def dialog(application, tmp_path, monkeypatch):
     from groundstation.gui.application.context import ApplicationContext
-    from groundstation.gui.fly.log_book_dialog import LogBookDialog
+    from groundstation.gui.fly.after_flight import LogBookDialog
 
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
     for entry in (ENTRY, replace(ENTRY, battery="", ended="the link was lost"), replace(ENTRY, is_simulated=True)):
