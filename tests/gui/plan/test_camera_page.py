@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from groundstation.gui.plan.camera_page import CameraPage
+from groundstation.gui.plan.plan_page import CameraPage
 from groundstation.services.mission.camera import camera_report
 from groundstation.services.project.document import Document, PlanEntry
 from planning.aircraft.catalogue import profile
