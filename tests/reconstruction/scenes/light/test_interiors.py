@@ -19,10 +19,9 @@ from reconstruction.scenes.light.interiors import CEILING, FADES_M, FLANK, FLOOR
 from reconstruction.scenes.parameters import RenderSettings
 from reconstruction.scenes.photos.renderer import Renderer
 from reconstruction.scenes.record import Glass, Interiors, Scene
-from reconstruction.scenes.world.build import PAINT, build_scene, facade_bows_per_m
+from reconstruction.scenes.world.build import PAINT, build_scene, facade_bows_per_m, shared_rooms
 from reconstruction.scenes.world.bundled import bundled_scene, curved_site, planar_site
 from reconstruction.scenes.world.look import Look
-from reconstruction.scenes.world.rooms import shared_rooms
 from tests.reconstruction.scenes.small_scenes import facing_south, panes, photo, scene
 
 Array = NDArray[np.float64]
