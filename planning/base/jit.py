@@ -21,7 +21,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 Result = TypeVar("Result")
 
 LAYOUT = 3
-"""Raised when a module moves from which kernels take types: what was compiled names it, and could not be read."""
+"""Part of the version of compiled code on disk: raised where none of it may be read any more."""
 
 OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 """Of all kernels. None is called from C, and what would let it be takes its share of the compiling."""
@@ -32,7 +32,7 @@ def kernel(function: F) -> F:
 
     A kernel that others call with constants is compiled once; Numba by itself would compile it once for each constant.
     """
-    compiled = _kept_for_this_layout(numba.njit(**OPTIONS)(function))
+    compiled = _kept_on_disk(numba.njit(**OPTIONS)(function))
     template_of = compiled.get_call_template
 
     def get_call_template(arguments: Sequence[Type], named: Mapping[str, Type]) -> Any:
@@ -44,13 +44,25 @@ def kernel(function: F) -> F:
 
 def inline(function: F) -> F:
     """Compile a small helper into whatever kernel calls it."""
-    return cast("F", _kept_for_this_layout(numba.njit(**OPTIONS, inline="always")(function)))
+    return cast("F", _kept_on_disk(numba.njit(**OPTIONS, inline="always")(function)))
 
 
-def _kept_for_this_layout(compiled: Any) -> Any:
-    """Have compiled code on disk told apart by `LAYOUT`, beside Numba's own version."""
+def _kept_on_disk(compiled: Any) -> Any:
+    """Have compiled code on disk read where it can be, and compiled again where it cannot.
+
+    It names the modules of its types: where one has moved since, Numba by itself raises an error.
+    """
     file = compiled._cache._cache_file
     file._version += f"-{LAYOUT}"
+    load_index = file._load_index
+
+    def load_what_can_be_read() -> Any:
+        try:
+            return load_index()
+        except (ImportError, AttributeError):
+            return {}
+
+    file._load_index = load_what_can_be_read
     return compiled
 
 
