@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QElapsedTimer, QRectF, Qt, QTimer
 from PySide6.QtGui import QColor, QFocusEvent, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
-from PySide6.QtWidgets import QPushButton, QWidget
+from PySide6.QtWidgets import QPushButton, QToolTip, QWidget
 
 HOLD_MS = 700
 """Time for which it is held: longer than a slip, which lifts within 0.2 s, and short enough for an emergency."""
@@ -23,7 +23,8 @@ KEYS = (Qt.Key.Key_Space, Qt.Key.Key_Return, Qt.Key.Key_Enter)
 class HoldButton(QPushButton):
     """Clicked once it was held for `HOLD_MS`, by a finger or by Space or Enter; letting go before does nothing.
 
-    A bar along its lower edge grows meanwhile. `click()`, which shortcuts and screen readers call, acts at once.
+    A bar along its lower edge grows meanwhile; who lets go before it is full is told to keep the button pressed.
+    `click()`, which shortcuts and screen readers call, acts at once.
     """
 
     def __init__(self, text: str, parent: QWidget | None = None) -> None:
@@ -72,7 +73,7 @@ class HoldButton(QPushButton):
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """Let go."""
         if event.button() == Qt.MouseButton.LeftButton:
-            self.let_go()
+            self._let_go_early()
         event.accept()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
@@ -87,7 +88,14 @@ class HoldButton(QPushButton):
         if Qt.Key(event.key()) not in KEYS:
             super().keyReleaseEvent(event)
         elif not event.isAutoRepeat():
+            self._let_go_early()
+
+    def _let_go_early(self) -> None:
+        """Let go by hand: where it was still held, it did nothing, which looks like a broken button without a word."""
+        if self.is_held():
             self.let_go()
+            text = self.tr("Keep it pressed until the bar is full")
+            QToolTip.showText(self.mapToGlobal(self.rect().bottomLeft()), text, self)
 
     def focusOutEvent(self, event: QFocusEvent) -> None:  # noqa: N802
         """Where the keyboard goes elsewhere, nothing tells when the key is let go."""

@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QFocusEvent, QKeyEvent
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QToolTip
 
 from groundstation.gui.widgets.hold_button import HOLD_MS, NEAR_PX, HoldButton
 
@@ -46,6 +46,39 @@ def test_a_press_that_lasts_acts_once_and_a_slip_does_not(button):
     assert button.acted == [True], "still pressed, it acts no second time"
     QTest.mouseRelease(button, LEFT)
     assert button.acted == [True]
+
+
+def no_hint():
+    """Whatever hint is shown goes."""
+    QToolTip.hideText()
+    end = time.monotonic() + 60.0
+    while QToolTip.isVisible() and time.monotonic() < end:
+        wait(0.01)
+    assert not QToolTip.isVisible()
+
+
+def test_a_press_that_is_too_short_says_what_to_do(button):
+    def by_mouse():
+        QTest.mousePress(button, LEFT)
+        yield
+        QTest.mouseRelease(button, LEFT)
+
+    def by_key():
+        QTest.keyPress(button, Qt.Key.Key_Space)
+        yield
+        QTest.keyRelease(button, Qt.Key.Key_Space)
+
+    for press in (by_mouse, by_key):
+        no_hint()
+        for _ in press():
+            assert not QToolTip.isVisible()
+        assert QToolTip.isVisible()
+        assert "Keep it pressed" in QToolTip.text()
+    no_hint()
+    for _ in by_mouse():
+        wait(1.7 * HOLD_MS / 1000.0)
+    assert button.acted == [True]
+    assert not QToolTip.isVisible(), "it was held long enough"
 
 
 def test_its_bar_shows_how_long_it_is_held(application, button):
