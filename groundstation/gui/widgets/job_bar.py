@@ -108,8 +108,13 @@ class JobBar(QWidget):
         self._say_time(ongoing.elapsed_s, ongoing.remaining_s, self.tr("{0} left"))
         for widget in (self._label, self._bar, self._left):
             widget.setVisible(True)
-        self._cancel.setVisible(False)
+        self._hide_cancel()
         self.setVisible(True)
+
+    def _hide_cancel(self) -> None:
+        """Hide it, and let nothing have the keyboard: Qt would hand that on to Undo, which the next Space presses."""
+        self._cancel.clearFocus()
+        self._cancel.hide()
 
     def _say_time(self, elapsed_s: float, remaining_s: float | None, left: str) -> None:
         """One time: how long it will take, or, where nobody knows that, how long it has taken."""
@@ -124,6 +129,8 @@ class JobBar(QWidget):
             self._show_contents(True)
 
     def _show_contents(self, visible: bool) -> None:
+        if not visible:
+            self._hide_cancel()
         for widget in (self._label, self._bar, self._left, self._cancel):
             widget.setVisible(visible)
         self._queue.setVisible(visible and len(self._context.jobs()) > 1)

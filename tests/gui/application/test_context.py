@@ -141,6 +141,31 @@ def test_the_job_bar_shows_progress_queue_and_time_and_cancels(application, cont
     assert bar.isHidden()
 
 
+def test_the_keyboard_goes_to_no_other_button_when_a_job_was_cancelled(application, context):
+    from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
+
+    from groundstation.gui.widgets.job_bar import JobBar
+
+    window, gate, undone = QWidget(), Gate(), []
+    undo, bar = QPushButton("Undo"), JobBar(context)
+    undo.clicked.connect(undone.append)
+    layout = QVBoxLayout(window)
+    layout.addWidget(undo)
+    layout.addWidget(bar)
+    window.show()
+    context.start("first", gate)
+    wait(application, bar._cancel.isVisible)
+    window.activateWindow()
+    bar._cancel.setFocus()
+    wait(application, bar._cancel.hasFocus)
+    QTest.mouseClick(bar._cancel, Qt.MouseButton.LeftButton)
+    wait(application, lambda: not context.jobs() and not bar.isVisible())
+    assert not undo.hasFocus()
+    QTest.keyClick(application.focusWidget() or window, Qt.Key.Key_Space)
+    assert not undone
+    window.close()
+
+
 def test_work_that_is_no_job_has_the_bar_while_no_job_runs(application, context):
     from groundstation.gui.application.context import Ongoing
     from groundstation.gui.widgets.job_bar import JobBar
