@@ -376,6 +376,7 @@ class ProjectController(QObject):
 
         def done(written: Document) -> None:
             if is_new:
+                self.context.withdraw("project.lock")  # it spoke of the folder that was left
                 self._or_warn(lambda: self.project_session.switch_to_saved(folder))
             self.context.session.saved(document, written, folder)
             self.context.withdraw("project.copy")

@@ -340,6 +340,10 @@ def test_a_second_window_on_one_project_is_told(application, make_controller, tm
     turn_until_idle(application, second)
     assert "open in another Reflight" in second.window.messages.texts()
     assert second.context.document.site is not None
+    assert any("another Reflight" in message.text for message in second.window.messages.standing())
+    second.save_in(tmp_path / "copy")
+    turn_until_idle(application, second)
+    assert not second.window.messages.standing(), "the copy is open nowhere else"
 
 
 @pytest.mark.slow
