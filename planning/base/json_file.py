@@ -201,7 +201,13 @@ def expect_format(content: Any, expected: str, path: Path) -> None:
     """
     found = content.get("format", expected) if isinstance(content, dict) else expected
     if found != expected:
-        raise InputError.say("format: expected '{}', got {}; is it the right file?", expected, repr(found), place=path)
+        raise InputError(wrong_format(expected, found, path))
+
+
+def wrong_format(expected: object, found: Any, path: Path) -> Message:
+    """What is said of a file that names another format, or none."""
+    named = repr(found) if isinstance(found, str) else say("none")
+    return say("format: expected '{}', got {}; is it the right file?", expected, named, place=path)
 
 
 _WORDS = {

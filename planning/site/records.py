@@ -49,7 +49,7 @@ def check_point(point: Vec3, name: str) -> None:
         if abs(value) > MAX_COORDINATE_M:
             raise ValueError(
                 say(
-                    "expected local ENU metres within {:.0f} m of the origin, {} is {:.1fm} (projected coordinates "
+                    "expected local ENU metres within {:.0f} m of the origin, {} is {:.10gm} (projected coordinates "
                     "such as UTM must be shifted to the site's origin first)",
                     MAX_COORDINATE_M,
                     axis,

@@ -12,7 +12,7 @@ from groundstation.services.project.migration import FORMAT, VERSION, Content, L
 from groundstation.services.project.store import PROJECT_FILE, digest
 from planning.base.errors import InputError
 from planning.base.files import read_input_file
-from planning.base.json_file import JSON_FILE, parse_json, plain_values, read_json, to_record
+from planning.base.json_file import JSON_FILE, parse_json, plain_values, read_json, to_record, wrong_format
 from planning.base.messages import about, glue, say
 from planning.plan import PLAN_FORMAT
 from planning.site.records import SITE_FORMAT
@@ -199,9 +199,7 @@ def _version(content: Any, file: Path) -> int:
     found = content.get("format") if isinstance(content, dict) else None
     number = re.fullmatch(re.escape(FORMAT) + r"([1-9]\d{0,8})", found) if isinstance(found, str) else None
     if number is None:
-        raise InputError(
-            say("format: expected '{}', got {}; is it the right file?", glue(FORMAT, VERSION), repr(found), place=file)
-        )
+        raise InputError(wrong_format(glue(FORMAT, VERSION), found, file))
     version = int(number[1])
     if version > VERSION:
         raise InputError(

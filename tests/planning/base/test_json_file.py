@@ -134,8 +134,8 @@ def test_another_format_is_named_before_any_field(tmp_path):
     path = tmp_path / "x.json"
     expect_format({"format": "a/1"}, "a/1", path)
     expect_format({}, "a/1", path)
-    for found in ("b/1", "a/2", 3, None):
-        with pytest.raises(InputError, match=r"format: expected 'a/1', got .*; is it the right file\?"):
+    for found, named in (("b/1", "'b/1'"), ("a/2", "'a/2'"), (3, "none"), (None, "none"), ([], "none")):
+        with pytest.raises(InputError, match=rf"format: expected 'a/1', got {named}; is it the right file\?"):
             expect_format({"format": found}, "a/1", path)
 
 

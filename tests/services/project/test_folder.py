@@ -274,7 +274,7 @@ def test_a_request_that_cannot_be_read_does_not_take_the_plan_along(project):
         (("format", "reflight-project/3"), "a newer Reflight wrote this project"),
         (("format", "reflight-project/123456"), "a newer Reflight wrote this project"),
         (("format", "reflight-site/1"), "expected 'reflight-project/2', got 'reflight-site/1'"),
-        (("format", ...), "expected 'reflight-project/2', got None"),
+        (("format", ...), "expected 'reflight-project/2', got none"),
         (("format", "reflight-project/0"), "got 'reflight-project/0'"),
         (("plans", 0, "file", "../../etc/passwd"), r"plans\[0\].file: expected the path of a file in the project's"),
         (("plans", 0, "file", "/etc/passwd"), "expected the path of a file in the project's folder"),
