@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 import re
 import struct
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from functools import cache
@@ -125,6 +125,9 @@ class WantedSetting:
     value: float | None
 
 
+NO_VALUES: Mapping[str, float] = {}
+
+
 def speaks_parameters(mission: Mission) -> bool:
     """Whether the camera of a mission's profile takes parameters."""
     return mission.camera_controls is not None and "parameters" in mission.camera_controls.mavlink
@@ -149,18 +152,24 @@ def _wanted(mission: Mission) -> Iterator[tuple[Role, float | str]]:
         yield "white_balance", settings.white_balance
 
 
-def wanted_settings(mission: Mission, definition: CameraDefinition | None = None) -> tuple[WantedSetting, ...]:
+def wanted_settings(
+    mission: Mission, definition: CameraDefinition | None = None, values: Mapping[str, float] = NO_VALUES
+) -> tuple[WantedSetting, ...]:
     """Parameters for a mission's camera settings, as far as there are names for them; none where it has no such camera.
 
     Parameters
     ----------
     definition
         Of the camera; None: it has the names and numbers of the guide's example.
+    values
+        What its parameters have now, by name; those that are not told have the definition's defaults. What a value of
+        one leaves of another's options, as the mode does, counts in the order of setting.
     """
     if definition is None and not speaks_parameters(mission):
         return ()
     known = names()
     found = []
+    state = {} if definition is None else definition.defaults | dict(values)
     for role, wanted in _wanted(mission):
         text, standard = setting_text(role, wanted), getattr(known, role)
         if definition is None:
@@ -172,7 +181,10 @@ def wanted_settings(mission: Mission, definition: CameraDefinition | None = None
         if parameter is None:
             found.append(WantedSetting("", text, None))
             continue
-        option = value_of(parameter, wanted, SAME_EV if role == "compensation" else 0.0)
+        left = definition.left_of(parameter, state)
+        option = None if left is None else value_of(left, wanted, SAME_EV if role == "compensation" else 0.0)
+        if option is not None:
+            state[parameter.name] = option.value
         found.append(WantedSetting(parameter.name, text, None if option is None else option.value))
     return tuple(found)
 
@@ -188,13 +200,15 @@ class CameraSettingCall(RepeatedRequest):
 
     Parameters
     ----------
+    wanted
+        None: whatever it is now, which is read alone.
     system
         The vehicle's.
     """
 
-    def __init__(self, name: str, value: float, system: int) -> None:
+    def __init__(self, name: str, wanted: float | None, system: int) -> None:
         super().__init__(N_ATTEMPTS, ATTEMPT_S)
-        self.name, self._wanted, self._system = name, value, system
+        self.name, self._wanted, self._system = name, wanted, system
         self.outcome: ParameterOutcome | None = None
         self._step, self._component = _Step.READING, ANY_COMPONENT
         self._content, self._type = b"", 0
@@ -215,6 +229,8 @@ class CameraSettingCall(RepeatedRequest):
         return []
 
     def _heard(self, value: float | None, param_type: int, now_s: float) -> list[Message]:
+        if self._wanted is None:
+            return self._end(ParameterStatus.READ, value)
         is_wanted = value is not None and math.isclose(value, self._wanted, rel_tol=1e-5, abs_tol=1e-6)
         if self._step is _Step.VERIFYING:
             return self._end(ParameterStatus.SET if is_wanted else ParameterStatus.REFUSED, value)

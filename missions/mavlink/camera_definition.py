@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import lzma
 import math
+import operator
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -38,6 +39,7 @@ KINDS = {
 CUSTOM = 11
 
 _NAME = re.compile(r"[A-Za-z0-9_.\-]{1,16}", re.ASCII)
+_TERM = re.compile(r"([A-Za-z0-9_.\-]{1,16})\s*(!=|=|<|>)\s*(\S+)", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +48,22 @@ class CameraOption:
 
     name: str
     value: float
+
+    def has(self, value: float) -> bool:
+        """Whether this is the option for a value: those of type float come back rounded."""
+        return _is_equal(self.value, value)
+
+
+def _is_equal(one: float, other: float) -> bool:
+    return math.isclose(one, other, rel_tol=1e-5, abs_tol=1e-6)
+
+
+_COMPARISONS: dict[str, Callable[[float, float], bool]] = {
+    "=": _is_equal,
+    "!=": lambda one, other: not _is_equal(one, other),
+    "<": operator.lt,
+    ">": operator.gt,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +78,8 @@ class CameraParameter:
         All that it can have; empty where any number between `least` and `most` may be set.
     is_settable
         It is not to be read only, and a number.
+    default
+        What it has from the maker; None where the file does not say it.
     """
 
     name: str
@@ -69,6 +89,33 @@ class CameraParameter:
     least: float = -math.inf
     most: float = math.inf
     is_settable: bool = True
+    default: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class CameraRule:
+    """What a parameter can have while others have certain values.
+
+    Parameters
+    ----------
+    parameter
+        Its name.
+    when
+        Parameter, comparison and value, which all have to hold in one of the alternatives.
+    options
+        What is left of its options then; none where it has no effect.
+    """
+
+    parameter: str
+    when: tuple[tuple[tuple[str, str, float], ...], ...]
+    options: tuple[CameraOption, ...] = ()
+
+    def holds(self, values: Mapping[str, float]) -> bool:
+        """Whether it counts while parameters have these values; what a value is not known of does not hold."""
+        return any(
+            all(name in values and _COMPARISONS[sign](values[name], value) for name, sign, value in each)
+            for each in self.when
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +125,30 @@ class CameraDefinition:
     model: str
     vendor: str
     parameters: tuple[CameraParameter, ...]
+    rules: tuple[CameraRule, ...] = ()
+
+    @property
+    def defaults(self) -> dict[str, float]:
+        """What parameters have from the maker."""
+        return {each.name: each.default for each in self.parameters if each.default is not None}
+
+    def rulers_of(self, names: Collection[str]) -> tuple[str, ...]:
+        """Parameters on whose values it depends what these can have."""
+        rules = (rule for rule in self.rules if rule.parameter in names)
+        return tuple(dict.fromkeys(name for rule in rules for each in rule.when for name, _, _ in each))
+
+    def left_of(self, parameter: CameraParameter, values: Mapping[str, float]) -> CameraParameter | None:
+        """A parameter with the options that these values of others leave it; None where they leave none."""
+        for rule in self.rules:
+            if rule.parameter != parameter.name or not rule.holds(values):
+                continue
+            numbers = [option.value for option in rule.options]
+            left = tuple(option for option in parameter.options if any(map(option.has, numbers)))
+            options = left if parameter.options else rule.options
+            if not options:
+                return None
+            parameter = replace(parameter, options=options)
+        return parameter
 
 
 def parse_definition(content: bytes, place: object) -> CameraDefinition:
@@ -111,8 +182,9 @@ def parse_definition(content: bytes, place: object) -> CameraDefinition:
     if len(set(names)) < len(names):
         twice = next(name for name in names if names.count(name) > 1)
         raise InputError.say("names the parameter '{}' twice", twice, place=place)
+    rules = tuple(rule for element in elements for rule in _rules(element))
     model, vendor = (_text(root.findtext(f"definition/{name}") or "") for name in ("model", "vendor"))
-    return CameraDefinition(model, vendor, parameters)
+    return CameraDefinition(model, vendor, parameters, rules)
 
 
 def _unpacked(content: bytes, place: object) -> bytes:
@@ -144,7 +216,36 @@ def _parameter(element: Element, place: object) -> CameraParameter:
     is_read_only = element.get("readonly", "0").strip() not in ("", "0", "false")
     description = _text(element.findtext("description") or "")
     is_settable = kind != CUSTOM and not is_read_only
-    return CameraParameter(name, kind, description, options, least, most, is_settable)
+    default = _number(element.get("default"), math.nan)
+    return CameraParameter(
+        name, kind, description, options, least, most, is_settable, None if math.isnan(default) else default
+    )
+
+
+def _rules(element: Element) -> Iterator[CameraRule]:
+    """What the options of a parameter say about others, once the parameters themselves were read."""
+    for option in element.findall("options/option"):
+        value = _number(option.get("value"), math.nan)
+        if math.isnan(value):
+            continue
+        own = (element.get("name", ""), "=", value)
+        for each in option.findall("exclusions/exclude"):
+            yield CameraRule((each.text or "").strip(), ((own,),))
+        for each in option.findall("parameterranges/parameterrange"):
+            options = ((_text(left.get("name", "")), _number(left.get("value"), math.nan)) for left in each)
+            left = tuple(CameraOption(name, number) for name, number in options if not math.isnan(number))
+            when = tuple((own, *terms) for terms in _alternatives(each.get("condition", "")))
+            yield CameraRule(each.get("parameter", "").strip(), when, left)
+
+
+def _alternatives(condition: str) -> list[tuple[tuple[str, str, float], ...]]:
+    """A condition such as 'CAM_EXPMODE=1 AND CAM_ISO!=0 OR ...'; what cannot be read of it counts as held."""
+    found = []
+    for alternative in re.split(r"\s+OR\s+", condition.strip()):
+        terms = (_TERM.fullmatch(term.strip()) for term in re.split(r"\s+AND\s+", alternative))
+        read = [(term[1], term[2], _number(term[3], math.nan)) for term in terms if term is not None]
+        found.append(tuple(term for term in read if not math.isnan(term[2])))
+    return found
 
 
 def _options(elements: Sequence[Element], name: str, kind: int, place: object) -> Iterator[tuple[str, float]]:

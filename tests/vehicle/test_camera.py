@@ -274,6 +274,39 @@ def test_a_definition_says_what_the_camera_calls_it() -> None:
     assert [(each.name, each.value) for each in automatic] == [("EXP_MODE", 0.0), ("", None)], "EV is to be read only"
 
 
+RANGED = OTHER.replace(
+    b" <parameters>",
+    b""" <parameters><parameter name="CAM_MODE" type="uint8" default="1"><options><option name="Photo" value="0"/>
+   <option name="Video" value="1"><parameterranges><parameterrange parameter="CAM_ISO" condition="EXP_MODE=3">
+    <roption name="ISO 100" value="1"/></parameterrange></parameterranges></option></options></parameter>""",
+)
+"""Its ISO 200 is for photos alone, as long as the exposure is manual."""
+
+
+def test_a_value_that_the_mode_does_not_allow_is_not_set() -> None:
+    ranged, mission = parse_definition(RANGED, "camera"), mission_with(MANUAL)
+
+    def iso(**values: float) -> float | None:
+        return {each.name: each.value for each in wanted_settings(mission, ranged, values)}["CAM_ISO"]
+
+    assert iso() is None, "made for video, and nobody has asked the camera"
+    assert iso(CAM_MODE=1.0) is None
+    assert iso(CAM_MODE=0.0) == 2.0
+    assert ranged.rulers_of(["CAM_ISO"]) == ("CAM_MODE", "EXP_MODE")
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize(("mode", "iso"), [(0, 2), (1, 1)])
+def test_in_a_flight_the_camera_is_asked_for_its_mode_before_it_is_set(mode: int, iso: int) -> None:
+    camera = other_camera()
+    camera.definition, camera.uri = RANGED, "mftp:///camera/definition.xml"
+    camera.values["CAM_MODE"], camera.kinds["CAM_MODE"] = mode, 1
+    told = prepared(camera)[-1]
+    assert camera.values["CAM_ISO"] == iso
+    assert ("the camera does not take this, set it by hand: ISO 200" in told) == (mode == 1)
+    assert camera.values["SHUT"] == 2
+
+
 @pytest.mark.few(1)
 @pytest.mark.parametrize("uri", ["mftp:///camera/definition.xml", "mftp://[;comp=1]/camera/definition.xml"])
 def test_in_a_flight_the_definition_is_fetched_and_the_camera_set_by_it(uri: str) -> None:

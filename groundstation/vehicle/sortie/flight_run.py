@@ -18,7 +18,7 @@ for again, beside it too (`camera_reports.py`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -229,6 +229,9 @@ def _set_camera(run: SortieRun) -> Steps:
     wanted = wanted_settings(run.orders.mission, definition)
     if not wanted:
         return
+    if definition is not None:
+        values = yield from _camera_values(run, definition.rulers_of([each.name for each in wanted]))
+        wanted = wanted_settings(run.orders.mission, definition, values)
     for each in wanted:
         if each.value is None:
             left.append(each)
@@ -247,6 +250,19 @@ def _set_camera(run: SortieRun) -> Steps:
     verdict = Verdict.WARN if left else Verdict.OK
     run.on_board = replace(run.on_board, camera=PreflightCheck("camera", verdict, text))
     run.note("camera", text)
+
+
+def _camera_values(run: SortieRun, names: Iterable[str]) -> Generator[Any, Any, dict[str, float]]:
+    """What parameters of the camera have now, as far as it answers."""
+    _, address = vehicle_of(run)
+    values = {}
+    for name in names:
+        outcome: ParameterOutcome = yield CameraSettingCall(name, None, address.system)
+        if outcome.status is ParameterStatus.UNKNOWN:
+            break
+        if outcome.value is not None:
+            values[name] = outcome.value
+    return values
 
 
 def _camera_definition(run: SortieRun) -> Generator[Any, Any, CameraDefinition | None]:

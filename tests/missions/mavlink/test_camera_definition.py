@@ -45,7 +45,7 @@ def test_the_guides_example_is_read_packed_or_not(tmp_path):
     assert (found.vendor, found.model) == ("Foo", "T100")
     mode, shutter, compensation, name = found.parameters
     assert mode == CameraParameter(
-        "CAM_EXPMODE", 5, "Exposure Mode", (CameraOption("Auto", 0), CameraOption("Manual", 1))
+        "CAM_EXPMODE", 5, "Exposure Mode", (CameraOption("Auto", 0), CameraOption("Manual", 1)), default=0.0
     )
     assert (shutter.kind, [option.value for option in shutter.options]) == (9, [0.016666, 0.002])
     assert (compensation.least, compensation.most) == (-3.0, 3.0)
@@ -53,6 +53,57 @@ def test_the_guides_example_is_read_packed_or_not(tmp_path):
     assert parse_definition(lzma.compress(GUIDE), "guide") == found
     (tmp_path / "camera.xml").write_bytes(GUIDE)
     assert read_definition(tmp_path / "camera.xml") == found
+
+
+RANGES = definition(
+    '<parameter name="CAM_MODE" type="uint32" default="1"><options><option name="Photo" value="0"/>'
+    '<option name="Video" value="1"><exclusions><exclude>CAM_PHOTOFMT</exclude></exclusions><parameterranges>'
+    '<parameterrange parameter="CAM_ISO" condition="CAM_EXPMODE=1"><roption name="100" value="100"/>'
+    '<roption name="200" value="200"/></parameterrange><parameterrange parameter="CAM_EV" '
+    'condition="CAM_EXPMODE!=1 AND CAM_WBMODE=0 OR CAM_EXPMODE=7"><roption name="0" value="0"/></parameterrange>'
+    "</parameterranges></option></options></parameter>",
+    '<parameter name="CAM_EXPMODE" type="uint8" default="0"><options><option name="Auto" value="0"/>'
+    '<option name="Manual" value="1"/></options></parameter>',
+    '<parameter name="CAM_ISO" type="uint32"><options><option name="100" value="100"/><option name="200" value="200"/>'
+    '<option name="6400" value="6400"/></options></parameter>',
+    '<parameter name="CAM_EV" type="float" min="-3" max="3"/>',
+    '<parameter name="CAM_PHOTOFMT" type="uint8"><options><option name="Raw" value="0"/></options></parameter>',
+)
+"""After the guide's section on ranges."""
+
+
+def left(name, **values):
+    """What is left of a parameter's options; None where it has no effect."""
+    found = parse_definition(RANGES, "guide")
+    parameter = next(each for each in found.parameters if each.name == name)
+    rest = found.left_of(parameter, values)
+    return None if rest is None else [option.value for option in rest.options]
+
+
+def test_what_a_parameter_can_have_goes_by_the_values_of_others():
+    whole = [100.0, 200.0, 6400.0]
+    assert left("CAM_ISO") == whole, "nothing is known of the mode"
+    assert left("CAM_ISO", CAM_MODE=0, CAM_EXPMODE=1) == whole
+    assert left("CAM_ISO", CAM_MODE=1, CAM_EXPMODE=0) == whole
+    assert left("CAM_ISO", CAM_MODE=1, CAM_EXPMODE=1) == [100.0, 200.0]
+    assert left("CAM_PHOTOFMT", CAM_MODE=0) == [0.0]
+    assert left("CAM_PHOTOFMT", CAM_MODE=1) is None
+    free, nought = [], [0.0]
+    assert left("CAM_EV", CAM_MODE=1, CAM_EXPMODE=0, CAM_WBMODE=0) == nought
+    assert left("CAM_EV", CAM_MODE=1, CAM_EXPMODE=0, CAM_WBMODE=4) == free
+    assert left("CAM_EV", CAM_MODE=1, CAM_EXPMODE=1, CAM_WBMODE=0) == free
+    assert left("CAM_EV", CAM_MODE=1, CAM_EXPMODE=7) == nought
+    found = parse_definition(RANGES, "guide")
+    assert found.defaults == {"CAM_MODE": 1.0, "CAM_EXPMODE": 0.0}
+    assert found.rulers_of(["CAM_ISO"]) == ("CAM_MODE", "CAM_EXPMODE")
+    assert found.rulers_of(["CAM_WBMODE"]) == ()
+
+
+def test_a_condition_that_cannot_be_read_limits():
+    found = parse_definition(RANGES.replace(b"CAM_EXPMODE=1", b"the sun shines"), "x")
+    (iso,) = (each for each in found.parameters if each.name == "CAM_ISO")
+    assert len(found.left_of(iso, {"CAM_MODE": 1.0}).options) == 2
+    assert len(found.left_of(iso, {"CAM_MODE": 0.0}).options) == 3
 
 
 ENTITIES = b"""<?xml version="1.0"?><!DOCTYPE m [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]>
