@@ -36,10 +36,12 @@ def state(*, is_armed, mode="AUTO.LOITER"):
 
 
 @given(phases, st.booleans(), st.booleans(), st.sampled_from(["AUTO.LOITER", "AUTO.MISSION"]))
-def test_return_and_land_are_allowed_whenever_a_vehicle_was_heard(phase, is_armed, is_ready, mode):
+def test_return_and_land_are_allowed_but_where_the_vehicle_surely_stands(phase, is_armed, is_ready, mode):
     for link in (LinkState.ALIVE, LinkState.LOST):
         may = allowed_requests(link, phase, state(is_armed=is_armed, mode=mode), is_ready=is_ready)
-        assert {Request.RETURN, Request.LAND, Request.DISCONNECT} <= may
+        stands = link is LinkState.ALIVE and not is_armed and phase not in (Phase.STARTING, Phase.FLYING)
+        assert may & {Request.RETURN, Request.LAND} == (set() if stands else {Request.RETURN, Request.LAND})
+        assert Request.DISCONNECT in may
 
 
 @given(phases, st.booleans(), st.booleans(), st.sampled_from([*LinkState]))

@@ -288,7 +288,10 @@ class FlightButtons(QWidget):
         """Enable what can be asked for."""
         for request, action in self._actions.items():
             action.setEnabled(request in allowed)
+            was_enabled = self._buttons[request].isEnabled()
             set_enabled(self._buttons[request], request in allowed)
+            if was_enabled != (request in allowed):
+                self._draw_icon(request)
         # What cannot be pressed is not stressed: some themes leave its text hard to read.
         wanted = next((request for request in (Request.START, Request.UPLOAD) if request in allowed), None)
         for request in (Request.UPLOAD, Request.START):
@@ -355,7 +358,7 @@ class FlightButtons(QWidget):
 
     def _draw_icon(self, request: Request) -> None:
         look, button = colours(), self._buttons[request]
-        is_filled = request in (Request.RETURN, Request.LAND)
+        is_filled = request in (Request.RETURN, Request.LAND) and button.isEnabled()
         on = look.base if is_filled else look.accent_text if button.property("primary") else look.text
         button.setIcon(icon(ICONS[request], on, ICON_PX))
 

@@ -30,13 +30,18 @@ def link_state(state: VehicleState, now_s: float, *, is_open: bool) -> LinkState
 def allowed_requests(
     link: LinkState, phase: Phase | None, state: VehicleState, *, is_ready: bool
 ) -> frozenset[Request]:
-    """What the pilot may ask for now. Returning and landing is never refused here while a vehicle was heard."""
+    """What the pilot may ask for now.
+
+    Returning and landing is refused only where the vehicle surely stands: it is disarmed on a live link, and no start
+    or flight is under way.
+    """
     if link is LinkState.CLOSED:
         return frozenset()
     allowed = {Request.DISCONNECT}
     if link not in (LinkState.ALIVE, LinkState.LOST):
         return frozenset(allowed)
-    allowed |= {Request.RETURN, Request.LAND}
+    if link is LinkState.LOST or state.is_armed or phase in (Phase.STARTING, Phase.FLYING):
+        allowed |= {Request.RETURN, Request.LAND}
     if link is LinkState.LOST:
         return frozenset(allowed)
     if phase in BEFORE_TAKE_OFF and not state.is_armed:

@@ -72,6 +72,8 @@ def test_in_flight_the_view_has_the_room_of_the_lists_and_a_joystick_returns_by_
     application.processEvents()
     assert page.report.isVisible()
     assert not page.overlay.figures.isVisible()
+    turn_until(application, lambda: not page.buttons.button(Request.RETURN).isEnabled())
+    assert not page.buttons.button(Request.LAND).isEnabled()
 
 
 @pytest.mark.slow
