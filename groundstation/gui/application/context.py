@@ -32,6 +32,7 @@ from groundstation.services.settings import DrawnBy
 from groundstation.services.units import UnitSystem
 from planning.base.errors import GroundStationError, shortened
 from planning.base.findings import Severity
+from planning.base.messages import Message as Template
 from planning.base.plugins import new_plugin_problems
 
 # Brings job events from worker threads to the window's thread as Qt signals.
@@ -76,6 +77,9 @@ class Message:
 
     Parameters
     ----------
+    text
+        In the window's language, or what a part without Qt says: `ApplicationContext.localized` puts it into the
+        language of when it is shown.
     about
         Topic of something that holds until it is settled, with dots from wide to narrow: `job.Plan`, `flight.battery`.
         Empty for what just happened.
@@ -241,7 +245,8 @@ class ApplicationContext(QObject):
 
     def say(self, severity: Severity, text: str, item: Item | None = None, about: str = "") -> None:
         """Tell the user something; with a topic, it is shown until it is settled or said otherwise."""
-        self.messageShown.emit(Message(severity, shortened(with_fields(text)), item, about))
+        worded = text if isinstance(text, Template) else with_fields(text)
+        self.messageShown.emit(Message(severity, shortened(worded), item, about))
 
     def withdraw(self, about: str) -> None:
         """What was said about a topic does not hold any more; one that ends in a dot stands for all below it."""

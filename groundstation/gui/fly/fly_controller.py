@@ -64,6 +64,7 @@ from groundstation.vehicle.setup import ParameterChange
 from missions.mavlink.ntrip import caster_of
 from planning.base.errors import InputError
 from planning.base.findings import Severity
+from planning.base.messages import say
 from planning.checks.case import Case
 from planning.plan import Plan
 
@@ -85,7 +86,8 @@ class FlyController(QObject):
     viewChanged(LiveView), photoCounted(PhotoCounted), linkChanged(LinkState), flightEnded(FlightEnded)
         As the flight publishes them.
     noted(object, Severity, str)
-        Something to be remembered: how long after take-off (None on the ground), how severe, and the text.
+        Something to be remembered: how long after take-off (None on the ground), how severe, and the text, as it is
+        before it is put into the window's language.
     aircraftSelected()
         Another one is selected.
     fleetChanged()
@@ -336,7 +338,7 @@ class FlyController(QObject):
             self._say(Severity.ERROR, str(error))
             return
         self._context.change(self.tr("Home to the aircraft"), replace(document, site=model))
-        self._context.say(Severity.NOTE, self.tr("Home is where the aircraft stands: plan again, then connect anew."))
+        self._say(Severity.NOTE, say("Home is where the aircraft stands: plan again, then connect anew."))
 
     def set_sortie(self, number: int) -> None:
         """Fly another sortie of the plan, from 1; connected, it becomes the next one."""
@@ -368,7 +370,7 @@ class FlyController(QObject):
         self._returning, asked = ReturnAll.of(self.views())
         self._ask_each(asked)
         for number in self._returning.waiting:
-            self._note(self._aircraft[number], Severity.NOTE, self.tr("returns once the others have landed"))
+            self._note(self._aircraft[number], Severity.NOTE, say("returns once the others have landed"))
 
     def _ask_each(self, asked: Sequence[tuple[int, Request]]) -> None:
         for number, request in asked:
@@ -384,7 +386,7 @@ class FlyController(QObject):
             if each is aircraft or each.flight is None:
                 continue
             is_same = each.flies(self.plan) and each.sortie_number == aircraft.sortie_number
-            text = self.tr("Aircraft {0} has sortie {1} already: choose another sortie.")
+            text = say("Aircraft {} has sortie {} already: choose another sortie.", each.number, each.sortie_number)
             if (
                 not is_same
                 and aircraft.flight is None
@@ -392,9 +394,11 @@ class FlyController(QObject):
                 and aircraft.choice.url == each.choice.url
             ):
                 is_same = True
-                text = self.tr("Aircraft {0} is connected at that address: give this one an address of its own.")
+                text = say(
+                    "Aircraft {} is connected at that address: give this one an address of its own.", each.number
+                )
             if is_same:
-                self._say(Severity.ERROR, text.format(each.number, each.sortie_number), "fleet")
+                self._say(Severity.ERROR, text, "fleet")
                 return False
         self._context.withdraw("fleet")
         return True
@@ -469,9 +473,9 @@ class FlyController(QObject):
             corrections=self._corrections_for(sortie, aircraft.settings),
         )
         aircraft.flight.start()
-        self._note(aircraft, Severity.NOTE, self.tr("connecting"))
+        self._note(aircraft, Severity.NOTE, say("connecting"))
         if charge < 1.0 and aircraft.choice.kind is LinkKind.SIMULATION:
-            text = self.tr("simulated battery: {0:.0%}, as the flight before left it").format(charge)
+            text = say("simulated battery: {:.0f} %, as the flight before left it", 100.0 * charge)
             self._note(aircraft, Severity.NOTE, text)
 
     def _corrections_for(self, sortie: LiveSortie, settings: FlightSettings) -> Corrections | None:
@@ -517,24 +521,24 @@ class FlyController(QObject):
                 self._take_link(aircraft, active, event)
             case Answered():
                 severity = Severity.OK if event.is_accepted else Severity.ERROR
-                self._note(aircraft, severity, self._words(event.text))
+                self._note(aircraft, severity, event.text)
                 if event.is_accepted:
                     self._context.withdraw(_topic(aircraft, "order"))
                 else:
                     self._tell(aircraft, Severity.ERROR, event.text, "order")
             case WarningRaised():
-                self._note(aircraft, event.warning.severity, self._words(event.warning.text))
+                self._note(aircraft, event.warning.severity, event.warning.text)
                 topic = f"flight.warning.{event.warning.code}"
                 self._tell(aircraft, event.warning.severity, event.warning.text, topic)
             case WarningCleared():
                 self._context.withdraw(_topic(aircraft, f"flight.warning.{event.code}"))
             case LinkProblem():
                 active.link_problem = event.text
-                self._note(aircraft, Severity.ERROR, self._words(event.text))
+                self._note(aircraft, Severity.ERROR, event.text)
                 self._tell(aircraft, Severity.ERROR, event.text, "link")
                 self._state_changed(aircraft)
             case LogProblem():
-                self._note(aircraft, Severity.WARNING, self._words(event.text))
+                self._note(aircraft, Severity.WARNING, event.text)
                 self._tell(aircraft, Severity.WARNING, event.text, "flight.log")
             case LogFetched():
                 self._take_log(aircraft, active, event)
@@ -547,7 +551,7 @@ class FlyController(QObject):
             severity = (
                 Severity.ERROR if text.severity <= 3 else Severity.WARNING if text.severity == 4 else Severity.NOTE
             )
-            self._note(aircraft, severity, self.tr("autopilot: {0}").format(text.text))
+            self._note(aircraft, severity, say("autopilot: {}", text.text))
         if aircraft is self.selected:
             self._tell_state()
             self.viewChanged.emit(view)
@@ -557,16 +561,16 @@ class FlyController(QObject):
 
     def _take_link(self, aircraft: LiveAircraft, active: ActiveFlight, event: LinkChanged) -> None:
         before, active.link = active.link, event.link
-        text = self._words(event.text)
+        text = event.text
         if event.link is LinkState.LOST:
-            words = self.tr("link lost") if not text else self.tr("link lost: {0}").format(text)
+            words = say("link lost") if not text else say("link lost: {}", text)
             self._note(aircraft, Severity.ERROR, words)
         elif event.link is LinkState.ALIVE:
             self._context.withdraw(_topic(aircraft, "link"))
-            words = self.tr("link alive") if before is not LinkState.LOST else self.tr("link found again")
+            words = say("link alive") if before is not LinkState.LOST else say("link found again")
             self._note(aircraft, Severity.OK, words)
         elif event.link is LinkState.CLOSED:
-            self._note(aircraft, Severity.NOTE, self.tr("disconnected"))
+            self._note(aircraft, Severity.NOTE, say("disconnected"))
             for topic in ("order", "flight.warning.", "flight.log"):
                 self._context.withdraw(_topic(aircraft, topic))
             if text:
@@ -588,27 +592,27 @@ class FlyController(QObject):
             if case.plan is self.plan and event.path is not None and event.record.effects:
                 self._context.note(simulated=event.path)
         if event.error is not None:
-            self._note(aircraft, Severity.ERROR, self._words(str(event.error)))
+            self._note(aircraft, Severity.ERROR, str(event.error))
             self._tell(aircraft, Severity.ERROR, str(event.error), "flight.ended")
         else:
-            self._note(aircraft, Severity.OK, self.tr("landed"))
+            self._note(aircraft, Severity.OK, say("landed"))
         if event.problem:
             self._tell(aircraft, Severity.WARNING, event.problem, "flight.kept")
         active.took_off_s = None
         if aircraft is self.selected:
             self.flightEnded.emit(event)
         elif event.report is not None:
-            self._tell(aircraft, Severity.OK, self.tr("landed; select it for its report"), "flight.landed")
+            self._tell(aircraft, Severity.OK, say("landed; select it for its report"), "flight.landed")
 
     def _take_log(self, aircraft: LiveAircraft, active: ActiveFlight, event: LogFetched) -> None:
         """The vehicle's own log is here: report from it."""
         path, case = event.path, active.sortie.case
         if path is None:
-            self._note(aircraft, Severity.ERROR, self._words(event.problem))
+            self._note(aircraft, Severity.ERROR, event.problem)
             self._tell(aircraft, Severity.ERROR, event.problem, "flight.log")
             return
-        proof = self.tr("proved by its checksum") if event.is_checked else self.tr("not proved: it knows no checksums")
-        self._note(aircraft, Severity.OK, self.tr("vehicle's log: {0}, {1}").format(path, proof))
+        proof = say("proved by its checksum") if event.is_checked else say("not proved: it knows no checksums")
+        self._note(aircraft, Severity.OK, say("vehicle's log: {}, {}", path, proof))
         number = active.sortie.orders.number
 
         def work(context: JobContext) -> FlightEnded:
@@ -619,7 +623,7 @@ class FlyController(QObject):
             if aircraft.active is active and ended.record is not None:
                 active.ended = ended
                 self.after.correct(case.plan, number, ended.record)
-                self._context.say(Severity.OK, self.tr("The report is made from the vehicle's own log."))
+                self._say(Severity.OK, say("The report is made from the vehicle's own log."))
                 if aircraft is self.selected:
                     self.flightEnded.emit(ended)
 
@@ -641,17 +645,11 @@ class FlyController(QObject):
 
     def _tell(self, aircraft: LiveAircraft, severity: Severity, text: str, about: str) -> None:
         """Say something of an aircraft; of one of several with its number."""
-        words = self._words(text)
-        if len(self.aircraft) > 1:
-            words = self.tr("Aircraft {0}: {1}").format(aircraft.number, words)
+        words = text if len(self.aircraft) == 1 else say("Aircraft {}: {}", aircraft.number, text)
         self._context.say(severity, words, about=_topic(aircraft, about))
 
     def _say(self, severity: Severity, text: str, about: str = "") -> None:
-        self._context.say(severity, self._words(text), about=about)
-
-    def _words(self, text: str) -> str:
-        words: str = self._context.localized(text)
-        return words
+        self._context.say(severity, text, about=about)
 
 
 def _topic(aircraft: LiveAircraft, about: str) -> str:

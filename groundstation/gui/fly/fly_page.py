@@ -449,7 +449,7 @@ class FlyPage(GradualTab):
         controller.linkChanged.connect(self._show_link)
         controller.flightEnded.connect(self._show_end)
         controller.simulation.effectsChanged.connect(self.simulation.set_effects)
-        controller.noted.connect(self.notes.add)
+        controller.noted.connect(self._note)
         context.documentChanged.connect(self._document_changed)
         context.unitsChanged.connect(self._show_units)
         context.jobsChanged.connect(self._show_state)
@@ -685,7 +685,7 @@ class FlyPage(GradualTab):
         pictured = self._pictured()
         self.overlay.set_sortie(None if pictured is None else pictured.sortie)
         for note in () if active is None else active.notes:
-            self.notes.add(*note)
+            self._note(*note)
         self.strip.set_photos({} if active is None else active.photos)
         self.readouts.set_counted(None if active is None else active.counted)
         self._show_report(None if active is None else active.ended)
@@ -745,6 +745,9 @@ class FlyPage(GradualTab):
             self._phase.setText(text)
         set_enabled(self.sortie, not view.state.is_armed)
         self.pictures.take_view(view)
+
+    def _note(self, time_s: float | None, severity: Severity, text: str) -> None:
+        self.notes.add(time_s, severity, self._context.localized(text))
 
     def _show_photo(self, counted: PhotoCounted) -> None:
         active = self.controller.active

@@ -170,6 +170,7 @@ class DialogFoot(QWidget):
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self._text)
         layout.addWidget(self.job_bar)
+        self._context = context
         context.messageShown.connect(self._show)
 
     def text(self) -> str:
@@ -177,4 +178,4 @@ class DialogFoot(QWidget):
         return self._text.text()
 
     def _show(self, message: Message) -> None:
-        self._text.setText(f"{severity_words()[message.severity]}: {message.text}")
+        self._text.setText(f"{severity_words()[message.severity]}: {self._context.localized(message.text)}")

@@ -79,7 +79,7 @@ class MessageArea(QWidget):
         self._all.setToolTip(self.tr("All messages: what holds now, and what was told before"))
         self._jump.setText(self.tr("Show place"))
         self._jump.setVisible(False)
-        self.sheet = MessageSheet(self)
+        self.sheet = MessageSheet(self, context.localized)
         line = QHBoxLayout(self)
         line.setContentsMargins(6, 2, 6, 2)
         for widget in (self._severity, self._text, self._jump, self._all):
@@ -161,7 +161,9 @@ class MessageArea(QWidget):
     def texts(self) -> str:
         """All messages, one in a line."""
         words = severity_words()
-        return "\n".join(f"{words[message.severity]}: {message.text}" for message, _ in self._told)
+        return "\n".join(
+            f"{words[message.severity]}: {self._context.localized(message.text)}" for message, _ in self._told
+        )
 
     def copy_all(self) -> None:
         """All messages to the clipboard, to send them to somebody."""
@@ -181,7 +183,7 @@ class MessageArea(QWidget):
             self._severity.setText("" if message is None else severity_words()[message.severity])
             self._severity.setProperty("role", "heading" if message is None else ROLES.get(message.severity, "heading"))
             self._severity.style().polish(self._severity)
-            self._text.setText("" if message is None else message.text)
+            self._text.setText("" if message is None else self._context.localized(message.text))
             self._jump.setVisible(message is not None and message.item is not None)
         self._all.setText(
             self.tr("Messages: {0}").format(f"\u26a0 {len(standing)}") if standing else self.tr("Messages")
@@ -215,6 +217,11 @@ class MessageArea(QWidget):
 class MessageSheet(QFrame):
     """The list of all messages; it lies over the window, above the line.
 
+    Parameters
+    ----------
+    words
+        Puts a message into the user's language.
+
     Signals
     -------
     closed()
@@ -226,9 +233,9 @@ class MessageSheet(QFrame):
     placeRequested = Signal(object)  # noqa: N815
     copyRequested = Signal()  # noqa: N815
 
-    def __init__(self, line: QWidget) -> None:
+    def __init__(self, line: QWidget, words: Callable[[str], str]) -> None:
         super().__init__(line)
-        self._line = line
+        self._line, self._words = line, words
         self._standing: tuple[Message, ...] = ()
         self.setFrameShape(QFrame.Shape.StyledPanel)
         self.setAutoFillBackground(True)
@@ -318,7 +325,7 @@ class MessageSheet(QFrame):
         self._list.addItem(row)
 
     def _row(self, message: Message, when: str) -> None:
-        row = QListWidgetItem(f"{when}{severity_words()[message.severity]}: {message.text}")
+        row = QListWidgetItem(f"{when}{severity_words()[message.severity]}: {self._words(message.text)}")
         row.setData(Qt.ItemDataRole.UserRole, message)
         colour = {Severity.ERROR: colours().error, Severity.WARNING: colours().warning}.get(message.severity)
         if colour:

@@ -13,7 +13,9 @@ from PySide6.QtWidgets import QLabel, QLineEdit, QMessageBox
 
 from groundstation.gui.fly.flight_buttons import APART_PX, HELD, ICON_PX, PLACES
 from groundstation.services.fly.events import LinkState, Request, ViewState
+from groundstation.services.fly.flight import DONE, REFUSALS
 from groundstation.services.fly.options import ConnectionChoice, LinkKind, choice_path, read_choice
+from groundstation.services.messages import translation
 from groundstation.services.project.document import Document, ItemKind, PlanEntry
 from groundstation.services.settings import Language
 from groundstation.services.units import UnitSystem
@@ -314,6 +316,27 @@ def test_a_new_window_takes_the_flight_over(application, controller, page):
     before = n_photos(again)
     turn_until(application, lambda: n_photos(again) > before)
     assert again.strip.states()[0][1] is ViewState.TAKEN
+
+
+def test_what_was_noted_and_told_before_is_said_in_a_language_that_is_chosen_later(application, controller, page):
+    connect(application, page)
+    ask_for(page, Request.UPLOAD)
+    on_board = DONE[Request.UPLOAD]
+    turn_until(application, lambda: on_board in page.notes.texts())
+    controller.context.say(Severity.ERROR, REFUSALS[Request.LOG], about="order")
+    assert REFUSALS[Request.LOG] in controller.window.messages.line()
+    try:
+        controller.choose(language=Language.GERMAN)
+        again = controller.window.tab("fly")
+        assert again is not page
+        german = translation("de")
+        assert german(on_board) != on_board
+        assert on_board not in again.notes.texts()
+        assert german(on_board) in again.notes.texts()
+        assert controller.window.messages.line().endswith(german(REFUSALS[Request.LOG]))
+        assert german(REFUSALS[Request.LOG]) in controller.window.messages.texts()
+    finally:
+        controller.choose(language=Language.ENGLISH)
 
 
 @pytest.mark.slow
