@@ -11,7 +11,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, QMargins, QObject, QRect, Signal
+from PySide6.QtCore import QEvent, QMargins, QObject, QRect, QTimer, Signal
 from PySide6.QtWidgets import QButtonGroup, QLabel, QPushButton, QStackedWidget, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
@@ -246,6 +246,8 @@ class SharedView(QWidget):
         for callback in waiting:
             callback(scene)
         self.sceneReady.emit(scene)
+        # In a turn of its own.
+        QTimer.singleShot(0, scene, scene.warm_up)
 
     def _look_around(self, model: SiteModel) -> None:
         """Have the virtual scene of a site made, and show it where the site is still that one."""

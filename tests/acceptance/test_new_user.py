@@ -36,7 +36,7 @@ class Mouse:
     def look(self, name):
         """Note the longest gap since the last look; taking a picture is no part of the way."""
         read_until = time.perf_counter() + READ_S
-        self.pilot.until(lambda: time.perf_counter() > read_until, f"{name}: it is read")
+        self.pilot.until(lambda: time.perf_counter() > read_until and self.gaps.n_turns() > 10, f"{name}: it is read")
         self.longest_ms[name] = round(self.gaps.longest_ms(), 1)
         self.pilot.see(name)
         self.gaps.start()

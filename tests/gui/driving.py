@@ -399,6 +399,10 @@ class TurnGaps:
         """Forget all gaps so far."""
         self._ticks.clear()
 
+    def n_turns(self) -> int:
+        """Turns since the start."""
+        return len(self._ticks)
+
     def longest_ms(self) -> float:
         """The longest since the start, but for the last turn, in which the test itself went on."""
         assert len(self._ticks) > 10

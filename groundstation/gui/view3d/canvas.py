@@ -13,7 +13,7 @@ import numpy as np
 import pyvista as pv
 from numpy.typing import NDArray
 from PySide6.QtCore import Qt, QTimer, Signal
-from PySide6.QtGui import QColor, QImage, QShowEvent
+from PySide6.QtGui import QColor, QImage, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
@@ -231,6 +231,18 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
         super().showEvent(event)
         self.setUpdatesEnabled(False)
         QTimer.singleShot(0, self, lambda: self.setUpdatesEnabled(True))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Paint with the window: Qt would paint here at once, and then once more."""
+        is_on = self.updatesEnabled()
+        self.setUpdatesEnabled(False)
+        super().resizeEvent(event)
+        self.setUpdatesEnabled(is_on)
+
+    def warm_up(self) -> None:
+        """Compile what every frame needs while none is wanted yet: 50 of the 70 ms of a first frame without a card."""
+        if self.is_open and self.n_painted == 0 and not self.isVisible():
+            self.grabFramebuffer()
 
     def initializeGL(self) -> None:  # noqa: N802
         """Smooth edges where a graphics card draws; a processor in its place takes 50 ms for that: see `set_smooth`."""

@@ -311,6 +311,10 @@ class ScenePicture(QWidget):
         self._canvas.started.connect(self._show_surroundings)
         self._dress()
 
+    def warm_up(self) -> None:
+        """Get ready to draw the first frame soon; see `Canvas`."""
+        self._canvas.warm_up()
+
     # What is shown
 
     def set_site(self, model: SiteModel | None, *, keep_camera: bool = False) -> None:
