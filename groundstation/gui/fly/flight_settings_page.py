@@ -1,8 +1,9 @@
-"""What the pilot decides about flights: whether RTK is needed, corrections, remote identification, spoken warnings."""
+"""What the pilot decides about flights: RTK, corrections, remote identification, warnings, video, the camera's file."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QCheckBox, QLabel, QLineEdit, QVBoxLayout, QWidget
@@ -11,10 +12,12 @@ from groundstation.gui.application.translate import translated
 from groundstation.gui.fly.joystick_controller import JoystickBox
 from groundstation.gui.widgets.inputs import Form
 from groundstation.gui.widgets.tab_order import set_enabled
+from groundstation.gui.widgets.value_boxes import FileBox, muted
 from groundstation.services.fly.options import FlightSettings
 from groundstation.services.fly.video import typed_video
 from groundstation.services.fly.video_offer import OfferedVideo
 from groundstation.services.units import UnitSystem
+from missions.mavlink.camera_definition import read_definition
 from missions.mavlink.ntrip import EXAMPLE_CASTER, caster_of
 from missions.mavlink.remote_id import EXAMPLE, operator_number, serial_number
 from planning.base.errors import InputError
@@ -37,7 +40,7 @@ class SettingsPage(QWidget):
         super().__init__(parent)
         self.needs_rtk = QCheckBox(self.tr("RTK needed for take-off"))
         self.speaks = QCheckBox(self.tr("Warnings are spoken"))
-        self._voice_text, self.joystick = _muted(""), JoystickBox()
+        self._voice_text, self.joystick = muted(""), JoystickBox()
         self._kept = FlightSettings()
         self.operator, self.serial, self._said = QLineEdit(), QLineEdit(), QLabel()
         self.operator.setPlaceholderText(EXAMPLE)
@@ -63,19 +66,34 @@ class SettingsPage(QWidget):
         form.addRow(self.tr("Serial number"), self.serial)
         form.addRow(self.tr("RTK corrections"), self.corrections)
         form.addRow(self.tr("Their password"), self.password)
-        self.video, self._video_said = QLineEdit(), _muted("")
+        self.video, self._video_said = QLineEdit(), muted("")
         self._offered: OfferedVideo | None = None
         self.video.setPlaceholderText(VIDEO_EXAMPLE)
         self.video.setToolTip(self.tr("The camera's stream, by RTSP, or as an MPEG transport stream by UDP"))
         form.addRow(self.tr("Video"), self.video)
+        self.definition = FileBox(
+            self.tr("From the camera"),
+            self.tr("Camera definition file"),
+            self.tr("Camera definitions (*.xml *.xz);;All files (*)"),
+        )
+        self.definition.setToolTip(
+            self.tr(
+                "Definition file of a MAVLink camera: from the next upload on, it is set by the names and options in "
+                "it; without one, the camera is asked for its own"
+            )
+        )
+        self._definition_said = QLabel()
+        self._definition_said.setWordWrap(True)
+        form.addRow(self.tr("Camera definition"), self.definition)
         layout = QVBoxLayout(self)
         layout.addWidget(self.needs_rtk)
-        layout.addWidget(_muted(self.tr("Start waits for RTK, and a warning comes when it is lost in flight.")))
+        layout.addWidget(muted(self.tr("Start waits for RTK, and a warning comes when it is lost in flight.")))
         layout.addWidget(self.speaks)
         layout.addWidget(self._voice_text)
         layout.addLayout(form)
         layout.addWidget(self._said)
         layout.addWidget(self._video_said)
+        layout.addWidget(self._definition_said)
         layout.addWidget(self.joystick)
         layout.addStretch(1)
         self.needs_rtk.toggled.connect(self._edited)
@@ -86,6 +104,7 @@ class SettingsPage(QWidget):
         self.corrections.editingFinished.connect(self._corrections_typed)
         self.password.editingFinished.connect(lambda: self.passwordTyped.emit(self.password.text()))
         self.video.editingFinished.connect(self._video_typed)
+        self.definition.valueChanged.connect(self._definition_chosen)
 
     def value(self) -> FlightSettings:
         """What was chosen."""
@@ -103,6 +122,8 @@ class SettingsPage(QWidget):
         self.corrections.setText(value.corrections)
         self.battery.setText(value.battery)
         self.video.setText(value.video)
+        self.definition.setValue(Path(value.camera_definition) if value.camera_definition else None)
+        _say(self._definition_said, "muted", "")
 
     def set_voice(self, *, has_voice: bool) -> None:
         """Say whether this computer can speak, and what it lacks."""
@@ -148,6 +169,29 @@ class SettingsPage(QWidget):
             self._kept = replace(self._kept, video=url)
             self.valueChanged.emit(self.value())
 
+    def definition_said(self) -> str:
+        """What is said of the camera's definition file."""
+        return self._definition_said.text()
+
+    def _definition_chosen(self, path: Path | None) -> None:
+        """Take the camera's definition file, or say why it is none and go on with the one before."""
+        try:
+            found = None if path is None else read_definition(path)
+        except InputError as error:
+            before = self._kept.camera_definition
+            self.definition.setValue(Path(before) if before else None)
+            _say(self._definition_said, "error", translated(str(error), UnitSystem.METRIC))
+            return
+        if found is None:
+            text = ""
+        else:
+            name = " ".join(filter(None, (found.vendor, found.model)))
+            n_settable = sum(parameter.is_settable for parameter in found.parameters)
+            text = self.tr("{0}: parameters that can be set: {1}").format(name, n_settable)
+        _say(self._definition_said, "ok", text)
+        self._kept = replace(self._kept, camera_definition="" if path is None else str(path))
+        self.valueChanged.emit(self.value())
+
     def _identity_typed(self) -> None:
         """Take the operator's and the aircraft's numbers, or say what is wrong with them."""
         typed, serial = self.operator.text().strip(), self.serial.text().strip()
@@ -158,16 +202,16 @@ class SettingsPage(QWidget):
             numbers = "" if number is None else number.public, serial_number(serial) if serial else ""
             kept = replace(self._kept, operator=numbers[0], serial_number=numbers[1])
         except InputError as error:
-            self._say("error", translated(str(error), UnitSystem.METRIC))
+            _say(self._said, "error", translated(str(error), UnitSystem.METRIC))
             return
         if number is None:
-            self._say("muted", "")
+            _say(self._said, "muted", "")
         elif number.is_proved:
-            self._say("ok", self.tr("Operator number: its checksum is right."))
+            _say(self._said, "ok", self.tr("Operator number: its checksum is right."))
         elif number.is_eu:
-            self._say("muted", self.tr("The form is right. With the secret part the checksum can be proved."))
+            _say(self._said, "muted", self.tr("The form is right. With the secret part the checksum can be proved."))
         else:
-            self._say("muted", self.tr("No number of an EASA state: nothing about it can be proved."))
+            _say(self._said, "muted", self.tr("No number of an EASA state: nothing about it can be proved."))
         self._kept = kept
         self.operator.setText(kept.operator)
         self.valueChanged.emit(self.value())
@@ -188,23 +232,18 @@ class SettingsPage(QWidget):
             if typed:
                 caster_of(typed)
         except InputError as error:
-            self._say("error", translated(str(error), UnitSystem.METRIC))
+            _say(self._said, "error", translated(str(error), UnitSystem.METRIC))
             return
-        self._say("muted", "")
+        _say(self._said, "muted", "")
         self._kept = replace(self._kept, corrections=typed)
         self.valueChanged.emit(self.value())
-
-    def _say(self, role: str, text: str) -> None:
-        self._said.setProperty("role", role)
-        self._said.style().polish(self._said)
-        self._said.setText(text)
 
     def _edited(self, _is_on: bool) -> None:
         self.valueChanged.emit(self.value())
 
 
-def _muted(text: str) -> QLabel:
-    label = QLabel(text)
-    label.setWordWrap(True)
-    label.setProperty("role", "muted")
-    return label
+def _say(label: QLabel, role: str, text: str) -> None:
+    label.setProperty("role", role)
+    label.style().polish(label)
+    label.setText(text)
+    label.setVisible(bool(text))

@@ -6,11 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Signal
 from PySide6.QtGui import QColor
 from PySide6.QtWidgets import (
     QHBoxLayout,
-    QPushButton,
     QScrollArea,
     QSplitter,
     QToolButton,
@@ -24,8 +23,9 @@ from groundstation.gui.mission.export_dialog import AnsweringDialog
 from groundstation.gui.widgets.inputs import ChoiceBox, Form
 from groundstation.gui.widgets.job_bar import DialogFoot
 from groundstation.gui.widgets.parameter_form import ParameterRow, add_rows, rows_of
-from groundstation.gui.widgets.questions import Questions, choose_file
+from groundstation.gui.widgets.questions import Questions
 from groundstation.gui.widgets.table_view import Column, RowModel, table_of
+from groundstation.gui.widgets.value_boxes import FileBox
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.mission.sora import (
     SoraDraft,
@@ -45,13 +45,10 @@ from planning.base.parameters import declared
 from planning.insight.ground_risk import known_body, usual_wind_m_s
 from planning.insight.ground_risk_request import GroundRiskRequest
 from planning.plan import Plan
+from planning.site.importing.elevation import HEIGHT_FILES
 from planning.site.records import SiteModel
 
 FORM_WIDTH_PX = 380
-
-
-NAME_PX = 200
-"""Of the name of a population raster."""
 
 KNOWN = declared(GroundRiskRequest)
 
@@ -76,22 +73,28 @@ class GroundRiskForm(QWidget):
         self._more.setCheckable(True)
         form, further = Form(), Form(self._further)
         add_rows(form, first)
-        self._raster: Path | None = None
-        self._raster_button, self._no_raster = QPushButton(), QPushButton(self.tr("Without"))
-        self._raster_button.setToolTip(
+        self.people = FileBox(
+            self.tr("People from a raster ..."),
+            self.tr("Population raster"),
+            self.tr("Population rasters (*.tif *.tiff);;All files (*)"),
+        )
+        self.people.setToolTip(
             self.tr("GeoTIFF of GHS-POP, WorldPop or others: people below the buffer, beside what you state")
         )
-        self._raster_button.clicked.connect(self._choose_raster)
-        self._no_raster.clicked.connect(lambda: self._take_raster(None))
-        people = QHBoxLayout()
-        people.addWidget(self._raster_button, 1)
-        people.addWidget(self._no_raster)
-        self.set_raster(None)
+        self.ground = FileBox(
+            self.tr("Ground from a raster ..."),
+            self.tr("Heights of the ground"),
+            self.tr("Heights ({0});;All files (*)").format(" ".join(f"*{ending}" for ending in HEIGHT_FILES)),
+        )
+        self.ground.setToolTip(
+            self.tr("GeoTIFF of the ground's heights, for this assessment in place of the site's own terrain")
+        )
         add_rows(further, more)
         further.setContentsMargins(0, 0, 0, 0)
         layout = QVBoxLayout(self)
         layout.addLayout(form)
-        layout.addLayout(people)
+        layout.addWidget(self.people)
+        layout.addWidget(self.ground)
         layout.addWidget(self._more)
         layout.addWidget(self._further)
         layout.addStretch(1)
@@ -99,28 +102,12 @@ class GroundRiskForm(QWidget):
         self._more.toggled.connect(self._further.setVisible)
         for row in self._rows.values():
             row.valueChanged.connect(self.valueChanged)
+        for box in self._files().values():
+            box.valueChanged.connect(lambda _path: self.valueChanged.emit())
 
-    def raster(self) -> Path | None:
-        """File of people; None for none."""
-        return self._raster
-
-    def set_raster(self, path: Path | None) -> None:
-        """Take a file of people, or none."""
-        self._raster = path
-        metrics = self._raster_button.fontMetrics()
-        shown = "" if path is None else metrics.elidedText(path.name, Qt.TextElideMode.ElideMiddle, NAME_PX)
-        self._raster_button.setText(shown or self.tr("People from a raster ..."))
-        self._no_raster.setEnabled(path is not None)
-
-    def _choose_raster(self) -> None:
-        kinds = self.tr("Population rasters (*.tif *.tiff);;All files (*)")
-        path = choose_file(self, self.tr("Population raster"), kinds)
-        if path is not None:
-            self._take_raster(path)
-
-    def _take_raster(self, path: Path | None) -> None:
-        self.set_raster(path)
-        self.valueChanged.emit()
+    def _files(self) -> dict[str, FileBox]:
+        """Boxes of files, by the name of their parameter."""
+        return {"population_raster": self.people, "terrain_raster": self.ground}
 
     def row(self, name: str) -> ParameterRow:
         """The row of a parameter."""
@@ -136,14 +123,16 @@ class GroundRiskForm(QWidget):
         """
         values: dict[str, Any] = {name: row.value() for name, row in self._rows.items()}
         values |= {name: None for name, known in self._known.items() if values[name] == known}
-        raster = None if self._raster is None else str(self._raster)
-        return GroundRiskRequest(**values, population_raster=raster)
+        values |= {name: str(box.value()) for name, box in self._files().items() if box.value() is not None}
+        return GroundRiskRequest(**values)
 
     def setValue(self, request: GroundRiskRequest) -> None:  # noqa: N802
         """Show another request; what it leaves open stays as it is known."""
         for name, row in self._rows.items():
             row.setValue(getattr(request, name))
-        self.set_raster(None if request.population_raster is None else Path(request.population_raster))
+        for name, box in self._files().items():
+            path = getattr(request, name)
+            box.setValue(None if path is None else Path(path))
 
     def _take_known(self, plan: Plan) -> None:
         """Put into the boxes what aircraft and plan say; a box of what nobody knows begins at its lowest value."""

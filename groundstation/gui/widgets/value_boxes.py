@@ -1,13 +1,15 @@
-"""Editors of places and extents: several lengths that are one value, with room for the reason why it was refused."""
+"""Editors of places, extents and files: values of several parts, with room for the reason why one was refused."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 
 from PySide6.QtCore import QCoreApplication, Qt, Signal
-from PySide6.QtWidgets import QGridLayout, QLabel, QLineEdit, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QLineEdit, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.widgets.inputs import LengthBox
+from groundstation.gui.widgets.questions import choose_file
 from groundstation.gui.widgets.terms import label_of
 from groundstation.services.units import UnitSystem
 from planning.geo.frames import Vec3
@@ -15,6 +17,10 @@ from planning.geo.mesh import MAX_COORDINATE_M
 
 DECIMALS = 2
 """Coordinates are shown to 1 cm, or a hundredth of a foot."""
+
+
+FILE_NAME_PX = 200
+"""Of the name of a file on its button."""
 
 
 class ErrorLine(QLabel):
@@ -63,6 +69,55 @@ class NameBox(QLineEdit):
         if self.text() != self._value:
             self._value = self.text()
             self.valueChanged.emit(self._value)
+
+
+class FileBox(QWidget):
+    """Edits a file that may be named: a button with its name, and one that takes it away.
+
+    Parameters
+    ----------
+    text
+        What the button says while there is none.
+    title, kinds
+        Of the dialog; `kinds` as Qt has them, "Sites (*.json)".
+    """
+
+    valueChanged = Signal(object)  # noqa: N815
+
+    def __init__(self, text: str, title: str, kinds: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._text, self._title, self._kinds = text, title, kinds
+        self._value: Path | None = None
+        self.choose, self.without = QPushButton(), QPushButton(self.tr("Without"))
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.choose, 1)
+        layout.addWidget(self.without)
+        self.choose.clicked.connect(self._ask)
+        self.without.clicked.connect(lambda: self._take(None))
+        self.setValue(None)
+
+    def value(self) -> Path | None:
+        """The file; None for none."""
+        return self._value
+
+    def setValue(self, path: Path | None) -> None:  # noqa: N802
+        """Show a file, or none."""
+        self._value = path
+        metrics = self.choose.fontMetrics()
+        shown = "" if path is None else metrics.elidedText(path.name, Qt.TextElideMode.ElideMiddle, FILE_NAME_PX)
+        self.choose.setText(shown or self._text)
+        self.choose.setAccessibleName("" if path is None else f"{self._text} {path.name}")
+        self.without.setVisible(path is not None)
+
+    def _ask(self) -> None:
+        path = choose_file(self.window(), self._title, self._kinds)
+        if path is not None:
+            self._take(path)
+
+    def _take(self, path: Path | None) -> None:
+        self.setValue(path)
+        self.valueChanged.emit(path)
 
 
 class PointBox(QWidget):

@@ -58,11 +58,12 @@ from groundstation.vehicle.telemetry import LocalFrame, updated_state
 from groundstation.vehicle.watch import PHOTO_LATE_S, FlightWarning, Watch
 from missions.flight.record import FlightRecord, TakenPhoto
 from missions.mavlink.autopilots import Autopilot
+from missions.mavlink.camera_definition import CameraDefinition, read_definition
 from missions.mavlink.link import GROUND_HEARTBEAT, GROUND_STATION, HEARTBEAT_EVERY_S
 from missions.mavlink.messages import Address, Message, Received
 from missions.mavlink.remote_id import RemoteIdSender
 from missions.mavlink.transfer.exchange import Route
-from planning.base.errors import GroundStationError, LinkError
+from planning.base.errors import GroundStationError, InputError, LinkError
 from planning.base.messages import say
 from planning.base.progress import Clock
 
@@ -193,8 +194,8 @@ REFUSALS = {
     Request.START: say("the pre-flight list is not all well, or nothing was uploaded yet"),
     Request.PAUSE: say("the vehicle does not fly its mission, so there is nothing to pause"),
     Request.RESUME: say("the vehicle is not in flight, so there is nothing to resume"),
-    Request.RETURN: say("no vehicle was heard yet, so none can return"),
-    Request.LAND: say("no vehicle was heard yet, so none can land"),
+    Request.RETURN: say("the vehicle is not in flight, so it cannot return"),
+    Request.LAND: say("the vehicle is not in flight, so it cannot land"),
     Request.LOG: say("logs are fetched on the ground only, from a vehicle that is heard and disarmed"),
     Request.DISCONNECT: say("there is no link"),
 }
@@ -465,13 +466,15 @@ class LiveFlight:
     def _begin_run(self) -> None:
         settings, connection = self._settings, self._connection
         fences, problem = own_fences(self._sortie.orders)
-        if problem:
-            self._publish(LogProblem(problem))
+        definition, unread = self._camera_definition()
+        for text in filter(None, (problem, unread)):
+            self._publish(LogProblem(text))
         options = RunOptions(
             sets_parameters=connection.is_simulated,
             starts_itself=False,
             needs_rtk=settings.needs_rtk,
             own_fences=fences,
+            camera_definition=definition,
         )
         run = FlightRun(self._sortie.orders, options, connection.name)
         run.state = replace(self._machine.state, photos=())
@@ -481,6 +484,16 @@ class LiveFlight:
         self._coverage.add_sortie(self._sortie.viewpoint_ids)
         for message in run.start(self._wire.now_s()):
             self._wire.send(message)
+
+    def _camera_definition(self) -> tuple[CameraDefinition | None, str]:
+        """The definition that the pilot named, and why it cannot be read; a simulated camera has its own names."""
+        path = self._settings.camera_definition
+        if not path or self._connection.is_simulated:
+            return None, ""
+        try:
+            return read_definition(Path(path)), ""
+        except InputError as error:
+            return None, say("the camera is asked for its own definition: {}", error)
 
     def _fetch_log(self) -> None:
         """Begin to fetch the vehicle's own log, or stop that."""

@@ -117,6 +117,8 @@ class FlightSettings:
         Warnings are spoken, where the computer can.
     video
         Address of the camera's stream, as `services.fly.video.video_url` takes it; empty: none.
+    camera_definition
+        Path of the camera's definition file, by which it is set over a link; empty: the camera is asked for its own.
     """
 
     needs_rtk: bool = False
@@ -126,6 +128,7 @@ class FlightSettings:
     battery: str = ""
     speaks: bool = True
     video: str = ""
+    camera_definition: str = ""
 
     @property
     def identity(self) -> RemoteId:

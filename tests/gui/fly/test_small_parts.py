@@ -86,6 +86,38 @@ def test_an_operators_number_is_proved_kept_without_its_secret_and_refused_where
     page.close()
 
 
+def test_a_cameras_definition_file_is_chosen_read_refused_and_taken_off(application, tmp_path):
+    from groundstation.gui.fly.flight_settings_page import SettingsPage
+    from tests.gui.driving import choose, click_on, clicked
+    from tests.missions.mavlink.test_camera_definition import GUIDE
+
+    good, bad = tmp_path / "t100.xml", tmp_path / "notes.xml"
+    good.write_bytes(GUIDE)
+    bad.write_text("<notes/>")
+    page, kept = SettingsPage(), []
+    page.valueChanged.connect(kept.append)
+    page.show()
+    assert not page.definition.without.isVisible()
+    with clicked(choose(bad)):
+        click_on(page, page.definition.choose)
+    assert "is no camera definition: expected <mavlinkcamera>, got <notes>" in page.definition_said()
+    assert (kept, page.definition.value()) == ([], None)
+    with clicked(choose(good)):
+        click_on(page, page.definition.choose)
+    assert page.definition_said() == "Foo T100: parameters that can be set: 3"
+    assert kept[-1].camera_definition == str(good)
+    with clicked(choose(bad)):
+        click_on(page, page.definition.choose)
+    assert page.definition.value() == good, "the one before is still there"
+    other = SettingsPage()
+    other.setValue(kept[-1])
+    assert other.definition.choose.text() == "t100.xml"
+    click_on(page, page.definition.without)
+    assert kept[-1].camera_definition == ""
+    assert page.definition_said() == ""
+    page.close()
+
+
 def test_a_caster_is_kept_and_its_password_is_not(application, tmp_path, monkeypatch):
     from groundstation.gui.fly.flight_settings_page import SettingsPage
     from groundstation.services.fly.options import flight_settings_path

@@ -13,6 +13,7 @@ from planning.insight.ground_risk_request import GroundRiskRequest
 from tests.gui.driving import choose, click_on, clicked, press_in
 from tests.gui.mission.test_mission_page import context, idle, opened, page, planned, said  # noqa: F401
 from tests.planning.insight.test_population import raster
+from tests.planning.site.importing.height_files import transform_at, write_heights
 
 
 def dialog_of(page, idle, context, planned):  # noqa: F811
@@ -80,20 +81,57 @@ def test_an_aircraft_nobody_described_is_asked_for(page, context, planned, idle)
 
 
 @pytest.mark.slow
+def test_the_ground_comes_from_a_raster_that_is_chosen_and_one_that_cannot_be_read_is_told(
+    page,  # noqa: F811
+    context,  # noqa: F811
+    planned,  # noqa: F811
+    idle,  # noqa: F811
+    tmp_path,
+):
+    dialog = dialog_of(page, idle, context, planned)
+    (tmp_path / "broken.tif").write_bytes(b"II*\0 no raster")
+    origin = planned[0].site.origin
+    at = {"origin": origin, "transform": transform_at(origin, "EPSG:32650", 25.0), "horizontal": "EPSG:32650"}
+    write_heights(tmp_path / "dtm.tif", lambda x, y: -0.2 * x, crs="EPSG:32650+5773", geoid=True, **at)
+
+    def chosen(path):
+        with clicked(choose(path)):
+            click_on(dialog, dialog.form.ground.choose)
+        dialog._ask_soon.timeout.emit()
+        idle()
+        return dialog.state_text()
+
+    text = chosen(tmp_path / "broken.tif")
+    assert text.startswith("Not assessed: ")
+    assert "broken.tif" in text
+    assert not dialog._action.isEnabled()
+    assert not chosen(tmp_path / "dtm.tif").startswith("Not assessed")
+    assert dialog.form.value() == GroundRiskRequest(terrain_raster=str(tmp_path / "dtm.tif"))
+    assert dialog.form.ground.choose.text() == "dtm.tif"
+    followed = [each for each in dialog.draft().findings if each.code == "sora-ground"]
+    assert [str(each.message)[:31] for each in followed] == ["the buffer follows the terrain:"]
+    click_on(dialog, dialog.form.ground.without)
+    dialog._ask_soon.timeout.emit()
+    idle()
+    assert dialog.form.value() == GroundRiskRequest()
+    dialog.close()
+
+
+@pytest.mark.slow
 def test_people_come_from_a_raster_that_is_chosen_and_counts_for_the_brief_too(page, context, planned, idle, tmp_path):  # noqa: F811
     path = raster(tmp_path / "hkg_pd_2020_1km.tif", np.full((60, 60), 1200.0))
     dialog = dialog_of(page, idle, context, planned)
     with clicked(choose(path)):
-        click_on(dialog, dialog.form._raster_button)
+        click_on(dialog, dialog.form.people.choose)
     dialog._ask_soon.timeout.emit()
     idle()
     assert dialog.form.value() == GroundRiskRequest(population_raster=str(path))
     assert "Ground risk class: 5 intrinsic" in dialog.state_text()
-    assert dialog.form._raster_button.text().startswith("hkg_pd")
+    assert dialog.form.people.choose.text().startswith("hkg_pd")
     row = next(row for row in dialog.table_texts() if row[0] == "D_pop")
     assert path.name in row[-1]
     assert page._ground_risk.population_raster == str(path)
-    click_on(dialog, dialog.form._no_raster)
+    click_on(dialog, dialog.form.people.without)
     dialog._ask_soon.timeout.emit()
     idle()
     assert dialog.form.value() == GroundRiskRequest()

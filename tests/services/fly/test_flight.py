@@ -34,8 +34,10 @@ from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import MissionAck
 from missions.simulator.conditions import Conditions
 from planning.base.errors import MissionError
+from tests.missions.mavlink.test_camera_definition import GUIDE
 from tests.services.live_cases import SPEED_UP, Follower, Reopening, planned, simulation, sortie
 from tests.slow import slow
+from tests.vehicle.test_camera import MANUAL, OTHER, obedient
 
 
 @pytest.fixture
@@ -43,10 +45,10 @@ def flight(tmp_path, monkeypatch):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path / "config"))
     flights = []
 
-    def begin(connection=None, folder=None, **options):
+    def begin(connection=None, folder=None, orders=None, **options):
         follower = Follower()
         connection = connection or simulation()
-        flight = LiveFlight(sortie(), connection, follower, folder or tmp_path / "flights", **options)
+        flight = LiveFlight(orders or sortie(), connection, follower, folder or tmp_path / "flights", **options)
         flights.append((flight, follower, connection))
         flight.start()
         return flight, follower
@@ -286,6 +288,36 @@ def test_a_mission_that_the_vehicle_refuses_is_never_called_on_board(flight):
     follower.until_may(Request.UPLOAD)
     assert Request.START not in follower.view.may
     assert follower.view.on_board.mission is None
+
+
+def test_a_camera_over_a_link_is_set_by_the_definition_file_that_the_pilot_named(flight, tmp_path):
+    model, plan = planned()
+    plan = obedient(plan, MANUAL)
+
+    def told_of_camera(definition):
+        connection = Simulation(plan, model, speed_up=SPEED_UP, is_simulated=False)
+        settings = FlightSettings(camera_definition=str(definition) if definition else "")
+        live, follower = flight(connection, settings=settings, orders=prepare_sortie(plan, model, 1))
+        follower.until_may(Request.UPLOAD)
+        live.request(Request.UPLOAD)
+        follower.until(lambda event: isinstance(event, FlightChanged) and event.view.on_board.camera is not None)
+        problems = [event.text for event in follower.of(LogProblem)]
+        check = follower.view.on_board.camera
+        follower.let_go()
+        live.close()
+        return check.text, problems
+
+    (tmp_path / "guide.xml").write_bytes(GUIDE)
+    (tmp_path / "other.xml").write_bytes(OTHER)
+    text, problems = told_of_camera(tmp_path / "guide.xml")
+    # The guide's example has a shutter time and a mode, and neither ISO, aperture nor white balance.
+    assert text.startswith("the camera is set, and read back: manual exposure, 1/500 s; the camera does not take this")
+    assert problems == []
+    text, _ = told_of_camera(tmp_path / "other.xml")
+    assert "no camera answers by the camera protocol" in text, "this camera has no parameter of these names"
+    text, problems = told_of_camera(tmp_path / "gone.xml")
+    assert text.startswith("the camera is set, and read back: manual exposure, 1/500 s, f/5.6, ISO 200")
+    assert "the camera is asked for its own definition: " in problems[0]
 
 
 @pytest.mark.slow
