@@ -26,6 +26,7 @@ from PySide6.QtWidgets import (
 
 from groundstation.gui.shared_view import SharedViewPage
 from groundstation.gui.widgets.inputs import ChoiceBox
+from groundstation.gui.widgets.scrolling import FittedLine, ShortText
 from groundstation.services.fly.events import Request, ViewState
 from groundstation.services.fly.options import ConnectionChoice
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
@@ -172,6 +173,34 @@ def least_px(widget):
     return max(widget.minimumSizeHint().width(), widget.minimumWidth())
 
 
+def cut_labels(window):
+    """Lines of text that are wider than their place and neither break, shrink nor end in dots."""
+    found = []
+    for label in window.findChildren(QLabel):
+        is_line = label.isVisible() and label.window() is window and not label.wordWrap() and not label.isWindow()
+        lines = "" if isinstance(label, (FittedLine, ShortText)) else label.text().replace("&", "")
+        if is_line and not Qt.mightBeRichText(lines):
+            needed = max((label.fontMetrics().horizontalAdvance(line) for line in lines.splitlines()), default=0)
+            if needed > label.contentsRect().width() + 1:
+                found.append(f"{name_of(label)}: {needed} > {label.contentsRect().width()}")
+    return found
+
+
+def hidden_titles(window):
+    """Rows of tabs in which the title of the one that is shown is not seen whole."""
+    found = []
+    for bar in window.findChildren(QTabBar):
+        if not bar.isVisible() or bar.window() is not window or bar.currentIndex() < 0:
+            continue
+        arrows = [each for each in bar.findChildren(QToolButton, options=DIRECT) if each.isVisible()]
+        end = min([bar.width(), *(each.x() for each in arrows)])
+        room = bar.tabRect(bar.currentIndex())
+        if room.left() < -1 or room.right() > end + 1:
+            title = bar.tabText(bar.currentIndex())
+            found.append(f"the title “{title}” at {room.left()} to {room.right()} of {end}")
+    return found
+
+
 class ViewPictures:
     """Looks at the window in each state."""
 
@@ -181,7 +210,7 @@ class ViewPictures:
     def at(self, state, window=None):
         turn_until_idle(self.application, self.controller)
         window = self.controller.window if window is None else window
-        checks = (out_of_reach, cut_short, cut_choices, squeezed, sideways)
+        checks = (out_of_reach, cut_short, cut_choices, squeezed, sideways, cut_labels, hidden_titles)
         problems = [problem for check in checks for problem in check(window)]
         if window.width() > SCREEN.width() or window.height() > SCREEN.height():
             problems.append(f"the window is {window.width()} x {window.height()}")

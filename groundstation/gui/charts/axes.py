@@ -16,6 +16,7 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
+from groundstation.gui.widgets.scrolling import fitted
 from groundstation.gui.widgets.theme import SORTIES, Colours, colours
 from groundstation.services.map.shapes import round_length
 
@@ -153,10 +154,12 @@ class Chart(QWidget):
 
 
 def _paint_upright(painter: QPainter, box: QRectF, title: str) -> None:
-    """A title along the upright axis; one that is longer reaches below it rather than out of the widget."""
-    metrics = QFontMetricsF(painter.font())
-    length = metrics.horizontalAdvance(title)
+    """A title along the upright axis; one that is longer reaches below it, and is written smaller in a low widget."""
     painter.save()
+    font, title = fitted(painter.font(), title, painter.device().height() - 2.0 * PAD_PX)
+    painter.setFont(font)
+    metrics = QFontMetricsF(font)
+    length = metrics.horizontalAdvance(title)
     painter.translate(PAD_PX, max(box.center().y(), 0.5 * length))
     painter.rotate(-90.0)
     painter.drawText(QRectF(-0.5 * length, 0.0, length, metrics.height()), BELOW, title)

@@ -177,7 +177,7 @@ class _Row:
     def __init__(self, number: int) -> None:
         self.check: PreflightCheck | None = None
         self.mark, self.words, self.side = QLabel(), QLabel(), QWidget()
-        self.mark.setFixedWidth(16)
+        self.mark.setFixedWidth(max(self.mark.fontMetrics().horizontalAdvance(sign) for sign, _ in MARKS.values()))
         self.words.setWordWrap(True)
         self.side.setObjectName(f"check-{number}")
         self.buttons: dict[Remedy, QPushButton] = {}

@@ -18,12 +18,11 @@ from PySide6.QtWidgets import (
     QLabel,
     QProgressBar,
     QPushButton,
-    QSizePolicy,
     QVBoxLayout,
     QWidget,
 )
 
-from groundstation.gui.widgets.scrolling import scrolled
+from groundstation.gui.widgets.scrolling import FittedLine, scrolled
 from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.gui.widgets.table_view import Column, RowModel, table_of
 from groundstation.gui.widgets.theme import colours
@@ -646,8 +645,8 @@ class _Tile(QFrame):
     def __init__(self, caption: str) -> None:
         super().__init__()
         self.setFrameShape(QFrame.Shape.StyledPanel)
-        self._figure, self._caption_text = QLabel(UNKNOWN), caption
-        self._caption = QLabel(caption)
+        self._figure, self._caption_text = FittedLine(UNKNOWN), caption
+        self._caption = FittedLine(caption)
         self._caption.setProperty("role", "muted")
         font = self._figure.font()
         font.setPointSizeF(FIGURE_SCALE * font.pointSizeF())
@@ -657,9 +656,6 @@ class _Tile(QFrame):
         layout.setContentsMargins(6, 2, 6, 2)
         layout.setSpacing(0)
         for label in (self._figure, self._caption):
-            label.setAlignment(Qt.AlignmentFlag.AlignLeft)
-            # A longer figure does not make its column wider.
-            label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
             layout.addWidget(label)
 
     def set_text(self, figure: str, severity: str, note: str = "") -> None:

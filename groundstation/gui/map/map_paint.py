@@ -262,13 +262,16 @@ def paint_text_box(painter: QPainter, corner: QPointF, text: str, found: Colours
     painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
 
 
-def paint_note(painter: QPainter, viewport: Viewport, text: str, found: Colours) -> None:
-    """A sentence above the scale bar, in as many lines as it takes."""
+def paint_note(painter: QPainter, viewport: Viewport, text: str, found: Colours, buttons: QRectF) -> None:
+    """A sentence above the scale bar, in as many lines as it takes, and beside the buttons at the right."""
     if not text:
         return
     wrap = Qt.TextFlag.TextWordWrap | Qt.AlignmentFlag.AlignLeft
     room = QRectF(12, 0, viewport.width_px - 24, viewport.height_px - 42)
     box = painter.boundingRect(room, wrap, text)
+    if room.bottom() - box.height() < buttons.bottom():
+        room.setRight(min(room.right(), buttons.left() - 8))
+        box = painter.boundingRect(room, wrap, text)
     box.moveBottom(room.bottom())
     painter.fillRect(box.adjusted(-4, -2, 4, 2), _paper(found))
     painter.setPen(QColor(found.text))

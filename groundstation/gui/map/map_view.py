@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QEvent, QMargins, QPointF, QRectF, QSize, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QMargins, QPoint, QPointF, QRect, QRectF, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QPushButton, QToolButton, QVBoxLayout, QWidget
 
@@ -533,7 +533,7 @@ class MapView(MapCanvas):
             below.clicked.connect(lambda _checked=False, slot=slot: slot())
             self._panel.add(below)
         self._panel.hide()
-        column = QVBoxLayout()
+        column = self._column = QVBoxLayout()
         for text, tip, slot in (
             ("+", self.tr("Nearer (+)"), lambda: self.zoom_by(1.0)),
             ("−", self.tr("Further away (-)"), lambda: self.zoom_by(-1.0)),
@@ -770,7 +770,9 @@ class MapView(MapCanvas):
         paint_text_box(painter, corner, self.layers.attribution(), found, is_right=True)
         paint_text_box(painter, QPointF(56, 72), self.pointer_text(), found)
         paint_legend(painter, viewport, self.legend(), found)
-        paint_note(painter, viewport, self.note(), found)
+        buttons = QRectF(QRect(QPoint(), self._column.sizeHint()))
+        buttons.moveTopRight(QPointF(viewport.width_px - EDGES.right(), EDGES.top()))
+        paint_note(painter, viewport, self.note(), found, buttons)
 
 
 def coordinates_text(lat_deg: float, lon_deg: float) -> str:

@@ -11,7 +11,6 @@ from PySide6.QtWidgets import (
     QCheckBox,
     QHeaderView,
     QLabel,
-    QStackedWidget,
     QTableView,
     QTabWidget,
     QVBoxLayout,
@@ -21,6 +20,7 @@ from PySide6.QtWidgets import (
 from groundstation.gui.charts.profile_chart import ProfileChart
 from groundstation.gui.map.map_paint import sortie_colour
 from groundstation.gui.widgets.findings_list import severity_icon
+from groundstation.gui.widgets.scrolling import TabsCorner
 from groundstation.gui.widgets.theme import colours
 from groundstation.gui.widgets.waypoint_table import WaypointTable
 from groundstation.services.mission.compare import Difference, MissionComparison, PhotoComparison
@@ -318,7 +318,7 @@ class MissionLists(QTabWidget):
         # After an edit the 3-D view draws, too: each in a turn of its own keeps the window answering.
         self._fill_soon = QTimer(self, interval=0, singleShot=True)
         self._fill_soon.timeout.connect(self._fill)
-        self._bars = QStackedWidget()
+        self._bars = TabsCorner(self)
         for view, title in (
             (self.waypoints, self.tr("Waypoints")),
             (self.profile, self.tr("Profile")),
@@ -326,7 +326,6 @@ class MissionLists(QTabWidget):
         ):
             self.addTab(view, title)
             self._bars.addWidget(view.bar)
-        self.setCornerWidget(self._bars)
         self.currentChanged.connect(self._list_changed)
         self.waypoints.picked.connect(self.picked)
         for looked_at in (self.waypoints.activated, self.profile.picked, self.comparison.picked):

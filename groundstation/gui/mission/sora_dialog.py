@@ -24,6 +24,7 @@ from groundstation.gui.widgets.inputs import ChoiceBox, Form
 from groundstation.gui.widgets.job_bar import DialogFoot
 from groundstation.gui.widgets.parameter_form import ParameterRow, add_rows, rows_of
 from groundstation.gui.widgets.questions import Questions
+from groundstation.gui.widgets.scrolling import resize_on_screen
 from groundstation.gui.widgets.table_view import Column, RowModel, table_of
 from groundstation.gui.widgets.value_boxes import FileBox
 from groundstation.services.jobs.runner import JobContext
@@ -63,7 +64,8 @@ class GroundRiskForm(QWidget):
 
     def __init__(self, plan: Plan, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._rows = rows_of(KNOWN)
+        people = {"population": ParameterRow(KNOWN["population"], self._people_text)}
+        self._rows = people | rows_of(KNOWN, but=tuple(people))
         self._known: dict[str, Any] = {}
         self._take_known(plan)
         first = {name: row for name, row in self._rows.items() if KNOWN[name].parameter.row == "first"}
@@ -104,6 +106,20 @@ class GroundRiskForm(QWidget):
             row.valueChanged.connect(self.valueChanged)
         for box in self._files().values():
             box.valueChanged.connect(lambda _path: self.valueChanged.emit())
+
+    def _people_text(self, band: str | None) -> str:
+        """A word of SORA for people per square kilometre, with its number; None: nobody said."""
+        texts = {
+            None: self.tr("not stated"),
+            "controlled": self.tr("controlled: nobody"),
+            "remote": self.tr("remote: under 5 per km²"),
+            "lightly": self.tr("lightly: under 50 per km²"),
+            "sparsely": self.tr("sparsely: under 500 per km²"),
+            "suburban": self.tr("suburban: under 5000 per km²"),
+            "city": self.tr("city: under 50000 per km²"),
+            "assembly": self.tr("assembly: more"),
+        }
+        return texts[band]
 
     def _files(self) -> dict[str, FileBox]:
         """Boxes of files, by the name of their parameter."""
@@ -210,7 +226,7 @@ class SoraDialog(AnsweringDialog):
         below = QSplitter()
         below.addWidget(self._table)
         below.addWidget(self._findings)
-        below.setSizes([560, 200])
+        below.setSizes([480, 280])
         right, columns = QVBoxLayout(), QHBoxLayout()
         right.addWidget(self._state)
         right.addWidget(self.map, 3)
@@ -221,7 +237,7 @@ class SoraDialog(AnsweringDialog):
         layout.addLayout(columns, 1)
         layout.addWidget(DialogFoot(self._context))
         layout.addLayout(self._foot())
-        self.resize(1180, 760)
+        resize_on_screen(self, 1180, 760)
 
     def _forget(self) -> int:
         self._draft = None
@@ -264,8 +280,9 @@ class SoraDialog(AnsweringDialog):
         role = "error" if Severity.ERROR in worst else "warning" if Severity.WARNING in worst else "ok"
         self._say(role, "\n".join(text[:1].upper() + text[1:] for text in texts))
         self._rows.set_rows(list(table_rows(risk, self._context.localized)))
-        for column, width in enumerate((60, 220, 80, 160)):
-            self._table.setColumnWidth(column, width)
+        letter_px = self.fontMetrics().averageCharWidth()
+        for column, n_letters in enumerate((9, 28, 11, 22)):
+            self._table.setColumnWidth(column, n_letters * letter_px)
         self._findings.set_findings(draft.findings)
         self.map.set_volumes([(QColor(colour), rings) for colour, rings in volume_shapes(draft)])
         self.map.look_at_volumes()

@@ -197,6 +197,7 @@ class PanelSide(QWidget):
             layout.addWidget(widget)
         layout.addWidget(self.list, 1)
         label = QLabel(self.tr("Colour panels by"))
+        label.setWordWrap(True)
         label.setBuddy(self.colour)
         layout.addWidget(label)
         layout.addWidget(self.colour)

@@ -31,6 +31,7 @@ from groundstation.gui.view3d.paint import ColourScale, ValueKind
 from groundstation.gui.view3d.scene_view import SceneView
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.questions import ask_text, choose_file
+from groundstation.gui.widgets.scrolling import TabsCorner
 from groundstation.gui.widgets.table_view import Column, RowModel, table_of
 from groundstation.gui.widgets.theme import colours
 from groundstation.gui.widgets.waypoint_table import WaypointTable
@@ -468,8 +469,9 @@ class PlanLists(QTabWidget):
         self.addTab(self.clearance, self.tr("Clearance"))
         self.addTab(self.plans, self.tr("Plans"))
         # What the table lets choose takes no height beside the titles.
-        self.setCornerWidget(self.waypoints.bar)
-        self.currentChanged.connect(lambda page: self.waypoints.bar.setVisible(page == 0))
+        beside = TabsCorner(self)
+        beside.addWidget(self.waypoints.bar)
+        self.currentChanged.connect(lambda page: beside.setVisible(page == 0))
 
     def _connect(self) -> None:
         controller, context = self._controller, self._context

@@ -76,7 +76,7 @@ class SunPanel(QWidget):
             button.setFixedWidth(button.sizeHint().height())
             button.clicked.connect(lambda _checked=False, days=days: self._turn(days))
         self.chart = SunChart()
-        self.chart.empty = self.tr("Light and take-off times stand here, once there is a site.")
+        self.chart.empty = self.tr("Light and take-off times stand here, once they are found for a site.")
         self.choose = QPushButton()
         self.choose.setToolTip(self.tr("Check the plan for a take-off then, on the Mission tab"))
         self._legend, self._moment, self._words = QLabel(), QLabel(), QLabel()

@@ -218,6 +218,7 @@ class ViewpointEditor(QWidget):
         self._value: Viewpoint | None = None
         self._name, self._says = QLabel(), QLabel()
         self._name.setProperty("role", "heading")
+        self._name.setWordWrap(True)
         self._says.setWordWrap(True)
         self._position = tuple(LengthBox(-MAX_COORDINATE_M, MAX_COORDINATE_M, NUDGE_M, decimals=2) for _ in range(3))
         self._heading = NumberBox(-180.0, 180.0, 5.0, "°")

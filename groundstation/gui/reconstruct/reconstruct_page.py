@@ -154,6 +154,7 @@ class ProgressPage(QWidget):
         ):
             title = QLabel(heading)
             title.setProperty("role", "heading")
+            title.setWordWrap(True)
             layout.addWidget(title)
             layout.addWidget(plot, 1)
         self._curves: tuple[ThinCurve, dict[str, ThinCurve]] = (ThinCurve(), {})

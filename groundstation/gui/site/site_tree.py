@@ -33,6 +33,7 @@ Index = QModelIndex | QPersistentModelIndex
 
 N_COLUMNS = 2
 ROOT = 0
+LEAST_COLUMN_PX = 24
 
 
 @dataclass(slots=True)
@@ -210,6 +211,8 @@ class SiteTree(QTreeView):
         self.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
         self.customContextMenuRequested.connect(self._show_menu)
         self.header().setStretchLastSection(True)
+        # What has no room ends in dots, and stands in its tool tip.
+        self.header().setMinimumSectionSize(LEAST_COLUMN_PX)
         self.header().setSectionResizeMode(0, QHeaderView.ResizeMode.ResizeToContents)
         self.selectionModel().currentChanged.connect(self._choose)
         self.doubleClicked.connect(self._look)

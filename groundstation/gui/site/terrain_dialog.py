@@ -13,7 +13,7 @@ from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.widgets.inputs import ChoiceBox, Form, LengthBox
 from groundstation.gui.widgets.job_bar import DialogFoot
 from groundstation.gui.widgets.questions import choose_files
-from groundstation.gui.widgets.scrolling import ButtonGrid, scrolled
+from groundstation.gui.widgets.scrolling import ButtonGrid, resize_on_screen, scrolled
 from groundstation.gui.widgets.value_boxes import ErrorLine, NameBox, muted
 from groundstation.services.jobs.runner import Job, JobContext
 from groundstation.services.site.terrain import attached_facts
@@ -210,7 +210,7 @@ class TerrainDialog(QDialog):
         self.remove.clicked.connect(self._remove)
         self._close.clicked.connect(self.reject)
         self.form.valueChanged.connect(self._show_buttons)
-        self.resize(WIDTH_PX, HEIGHT_PX)
+        resize_on_screen(self, WIDTH_PX, HEIGHT_PX)
         self._show_buttons()
 
     def done(self, result: int) -> None:

@@ -32,7 +32,7 @@ class EffectsPanel(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._layout = QVBoxLayout(self)
-        self._empty = QLabel(self.tr("What the scene calls for stands here, once there is a site with panels."))
+        self._empty = QLabel(self.tr("What the scene calls for stands here, once the panels of a site were looked at."))
         self._empty.setProperty("role", "muted")
         self._empty.setWordWrap(True)
         self._layout.addWidget(self._empty)

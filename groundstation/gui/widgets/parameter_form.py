@@ -118,7 +118,7 @@ class ParameterRow(QObject):
         if listed:
             box = ChoiceBox()
             if self.declared.default is None:
-                box.addItem(QCoreApplication.translate(CONTEXT, known.unset), None)
+                box.addItem(self._names(None), None)
             for value in listed:
                 box.addItem(self._names(value), value)
             return box

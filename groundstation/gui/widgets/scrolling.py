@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, QPoint, QRect, QSize, Qt, Signal
-from PySide6.QtGui import QMouseEvent, QPainter, QPaintEvent, QTextLayout
+from PySide6.QtGui import QFont, QFontMetricsF, QMouseEvent, QPainter, QPaintEvent, QTextLayout
 from PySide6.QtWidgets import (
     QFrame,
     QHBoxLayout,
@@ -19,10 +19,12 @@ from PySide6.QtWidgets import (
     QSizePolicy,
     QSplitter,
     QStackedWidget,
+    QTabWidget,
     QWidget,
 )
 
 from groundstation.gui.widgets.terms import label_of
+from groundstation.gui.widgets.theme import TOUCH_PX
 from planning.base.findings import Severity
 
 # A text in few lines that pushes nothing away, and what severities are called.
@@ -93,6 +95,49 @@ class ShortText(QLabel):
         return lines
 
 
+FRAME_PX, TITLE_BAR_PX = 20, 40
+"""Of windows, with some room."""
+
+
+def resize_on_screen(window: QWidget, width_px: int, height_px: int) -> None:
+    """Give a window a size, or what the screen has of it."""
+    room = window.screen().availableGeometry()
+    window.resize(min(width_px, room.width() - FRAME_PX), min(height_px, room.height() - TITLE_BAR_PX))
+
+
+LEAST_SCALE = 0.6
+"""Of letters that are made smaller for want of room."""
+
+
+def fitted(font: QFont, text: str, room_px: float) -> tuple[QFont, str]:
+    """A font in which a line has room, and the line: letters get smaller, and what is longer still ends in dots."""
+    wide, least = QFontMetricsF(font).horizontalAdvance(text), LEAST_SCALE * font.pointSizeF()
+    fitting = QFont(font)
+    # Letters have whole pixels: half as large, they are not half as wide.
+    while wide > room_px and fitting.pointSizeF() > least:
+        fitting.setPointSizeF(max(least, fitting.pointSizeF() * min(0.97, room_px / wide)))
+        wide = QFontMetricsF(fitting).horizontalAdvance(text)
+    return fitting, QFontMetricsF(fitting).elidedText(text, Qt.TextElideMode.ElideRight, room_px)
+
+
+class FittedLine(QLabel):
+    """A line that is written smaller where it has no room; it makes nothing wider."""
+
+    def __init__(self, text: str = "", parent: QWidget | None = None) -> None:
+        super().__init__(text, parent)
+        self.setTextFormat(Qt.TextFormat.PlainText)
+        self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802
+        """Write it at the left, in its font or a smaller one."""
+        painter, room = QPainter(self), self.contentsRect()
+        font, text = fitted(self.font(), self.text(), room.width())
+        painter.setFont(font)
+        flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+        self.style().drawItemText(painter, room, flags, self.palette(), self.isEnabled(), text, self.foregroundRole())
+        painter.end()
+
+
 def severity_words() -> dict[Severity, str]:
     """Severities of messages in the user's language."""
     translate = QCoreApplication.translate
@@ -153,6 +198,22 @@ class CurrentStack(QStackedWidget):
         """Of the page that is shown."""
         page = self.currentWidget()
         return super().minimumSizeHint() if page is None else _least_size(page)
+
+
+class TabsCorner(QStackedWidget):
+    """What stands beside the titles of a row of tabs, as wide as it wants, but the widest title keeps its room."""
+
+    def __init__(self, tabs: QTabWidget) -> None:
+        super().__init__(tabs)
+        self._tabs = tabs
+        tabs.setCornerWidget(self)
+
+    def sizeHint(self) -> QSize:  # noqa: N802
+        """Up to what the widest title and the arrows beside it leave."""
+        hint, bar = super().sizeHint(), self._tabs.tabBar()
+        widest = max((bar.tabRect(number).width() for number in range(bar.count())), default=0)
+        arrows = 0 if bar.count() < 2 else 2 * (TOUCH_PX - 4)
+        return QSize(min(hint.width(), max(0, self._tabs.width() - widest - arrows)), hint.height())
 
 
 class WrappingRow(QLayout):

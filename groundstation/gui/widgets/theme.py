@@ -195,6 +195,8 @@ def _style_sheet(found: Colours) -> str:
     QMenu::item {{ padding: 2px 24px 2px 12px; }}
     QMenu::item:selected, QMenuBar::item:selected {{ background: {found.accent}; color: {found.accent_text}; }}
     QMenuBar::item {{ padding: 7px 12px; }}
+    QCheckBox::indicator:unchecked, QAbstractItemView::indicator:unchecked
+        {{ border: 1px solid {found.muted}; background: {found.base}; }}
     QCheckBox, QRadioButton {{ min-height: {TOUCH_PX - 8}px; spacing: 8px; }}
     QTabBar QToolButton {{ min-height: 0px; padding: 0px; }}
     QTabBar QToolButton:focus {{ padding: 0px; }}
