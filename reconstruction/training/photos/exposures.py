@@ -240,20 +240,20 @@ def told_by_points(
         From `monitor`.
     """
     ones = np.ones((len(photos), 3))
-    found, n_looked_at = PointGains(ones, 0.0, 0), len(photos)
-    some = photos[:: -(-len(photos) // LOOKED_AT)]
+    found, looked_at = PointGains(ones, 0.0, 0), photos
     if (own_exposures, outlier_photos) != ("off", "off"):
-        found, n_looked_at = gains_from_points(source, some, points_enu_m, mesh, monitor), len(some)
+        looked_at = photos[:: -(-len(photos) // LOOKED_AT)]
+        found = gains_from_points(source, looked_at, points_enu_m, mesh, monitor)
     has_outliers = bool(found.outliers) and outlier_photos != "off"
-    exposed = decide(OwnExposures(), found, own_exposures)
-    if len(some) < len(photos) and (exposed.on or has_outliers):
-        found, n_looked_at = gains_from_points(source, photos, points_enu_m, mesh, monitor), len(photos)
-    looked_at = photos if n_looked_at == len(photos) else some
+    if len(looked_at) < len(photos) and (has_outliers or decide(OwnExposures(), found, own_exposures).on):
+        looked_at = photos
+        found = gains_from_points(source, photos, points_enu_m, mesh, monitor)
     names = tuple(looked_at[number].name for number in found.outliers)
-    left_out = decide(OutlierPhotos(), (names, n_looked_at), outlier_photos)
+    exposed = decide(OwnExposures(), found, own_exposures)
+    left_out = decide(OutlierPhotos(), (names, len(looked_at)), outlier_photos)
     return ToldByPoints(
         found.gains if exposed.on else ones,
-        found.outliers if left_out.on and looked_at is photos else (),
+        found.outliers if left_out.on else (),
         exposed,
         left_out,
     )

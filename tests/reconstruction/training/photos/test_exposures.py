@@ -14,7 +14,14 @@ from reconstruction.light.photo_set import PanelPlanes, PhotoSet, read_photo_set
 from reconstruction.light.shading import display_from_linear
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.model.saved import read_model, save_model
-from reconstruction.training.photos.exposures import Exposures, fitted_gain, gains_from_points, told_by_points
+from reconstruction.training.photos import exposures
+from reconstruction.training.photos.exposures import (
+    Exposures,
+    OwnExposures,
+    fitted_gain,
+    gains_from_points,
+    told_by_points,
+)
 from reconstruction.training.train import train_model
 from tests.reconstruction.light.synthetic_folder import cameras
 from tests.reconstruction.training.synthetic_data_set import write_data_set
@@ -204,6 +211,17 @@ def test_a_photo_of_something_else_tells_no_gain_and_is_named(tmp_path, what):
     kept = told_by_points(source, source.photos, POINTS, empty_mesh(), outlier_photos="off")
     assert kept.outliers == ()
     assert not kept.own_exposures.on
+
+
+def test_what_few_photos_leave_open_all_decide(tmp_path, monkeypatch):
+    source = painted(tmp_path, np.ones((N, 3)))
+    show_something_else(source.photos[2], 0.3 * patches(source.photos[2], 5))
+    few = gains_from_points(source, source.photos[::2], POINTS, empty_mesh())
+    assert few.spread > OwnExposures().tolerance, "four photos cannot tell which of them is the odd one"
+    monkeypatch.setattr(exposures, "LOOKED_AT", 4)
+    told = told_by_points(source, source.photos, POINTS, empty_mesh())
+    assert told.outliers == (2,)
+    assert not told.own_exposures.on
 
 
 def test_where_many_photos_disagree_rather_the_points_are_wrong(tmp_path):
