@@ -9,7 +9,6 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -197,26 +196,24 @@ class _Maker:
         n_elements = len(case.panes) * case.n
         seen = np.full(n_elements, -1, np.int64)
         sights: list[list[int]] = [[] for _ in range(n_elements)] if case.occlusion == "on" else []
-        waiting = _best_views(case)
-        for _ in range(TRIED_VIEWS):
-            elements, views = (
-                zip(*((e, found.pop(0)) for e, found in waiting.items()), strict=True) if waiting else ((), ())
-            )
-            if case.occlusion == "on":
-                lines = [
-                    np.array([case.views[v][1], case.panes[e // case.n].target])
-                    for e, v in zip(elements, views, strict=True)
-                ]
-                free = self.solids.directions(lines, 0.0)
-            else:
-                free = [[] for _ in elements]
-            for e, v, directions in zip(elements, views, free, strict=True):
+        elements, starts, views = _best_views(case)
+        places = np.array([place for _, place, _, _ in case.views]).reshape(-1, 3)
+        for k in range(TRIED_VIEWS):
+            waiting = np.flatnonzero((seen[elements] < 0) & (starts[:-1] + k < starts[1:]))
+            tried = views[starts[waiting] + k]
+            if case.occlusion == "off":
+                seen[elements[waiting]] = tried
+                break
+            free = self.solids.directions(self._sights(places[tried], elements[waiting]), 0.0)
+            for e, v, directions in zip(elements[waiting].tolist(), tried.tolist(), free, strict=True):
                 if directions is not None:
-                    seen[e] = v
-                    if sights:
-                        sights[e] = directions
-            waiting = {e: found for e, found in waiting.items() if seen[e] < 0 and found}
+                    seen[e], sights[e] = v, directions
         return {"seen": seen.tolist(), "sights": sights, "witnesses": self._witnesses(reachability, seen)}
+
+    def _sights(self, places: Array, elements: NDArray[np.int64]) -> Array:
+        """Lines of sight from places to the targets of sections, shape (n, 2, 3)."""
+        targets = np.array([pane.target for pane in self.case.panes])
+        return np.stack([places, targets[elements // self.case.n]], axis=1)
 
     def _witnesses(self, reachability: Reachability | None, seen: NDArray[np.int64]) -> list[list[Any]]:
         if reachability is None:
@@ -224,12 +221,10 @@ class _Maker:
         case = self.case
         elements = np.flatnonzero((reachability.verdicts.reshape(-1) == REACHABLE) & (seen < 0))
         places = reachability.witnesses_enu_m.reshape(-1, 3)[elements]
-        by = [_union([each]) for each in self.solids.directions([place[None] for place in places], case.near_m)]
+        by = self.solids.directions(places[:, None], case.near_m)
         if case.occlusion == "on":
-            lines = [
-                np.array([place, case.panes[e // case.n].target]) for e, place in zip(elements, places, strict=True)
-            ]
-            by = [_union(pair) for pair in zip(by, self.solids.directions(lines, 0.0), strict=True)]
+            free = self.solids.directions(self._sights(places, elements), 0.0)
+            by = [_union(pair) for pair in zip(by, free, strict=True)]
         found = zip(elements.tolist(), places.tolist(), by, strict=True)
         return [[e, *place, directions] for e, place, directions in found if directions is not None]
 
@@ -260,13 +255,19 @@ def _union(parts: Iterable[list[int] | None]) -> list[int] | None:
     return list(dict.fromkeys(each for part in parts for each in part or []))
 
 
-def _best_views(case: Case) -> dict[int, list[int]]:
-    """For each section that is surely in the picture of any view, the views with most to spare, best first."""
+def _best_views(case: Case) -> tuple[NDArray[np.int64], ...]:
+    """Sections that are surely in the picture of any view, and those views, the one with most to spare first.
+
+    Returns
+    -------
+    elements, starts, views
+        The views of section `elements[i]` are `views[starts[i] : starts[i + 1]]`.
+    """
     panes, n, rings = case.panes, case.n, case.rings
     c, normal, t, b = (np.array([getattr(pane, name) for pane in panes]) for name in ("c", "n", "t", "b"))
     corners = np.array([pane.corners for pane in panes])
     sines, cosines = np.array(case.angles).T
-    best: dict[int, list[tuple[float, int]]] = defaultdict(list)
+    found = [(np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int64))]
     for number, (_, place, heading_deg, pitch_deg) in enumerate(case.views):
         heading, pitch = math.radians(heading_deg), math.radians(pitch_deg)
         forward = np.array([math.cos(pitch) * math.sin(heading), math.cos(pitch) * math.cos(heading), math.sin(pitch)])
@@ -284,15 +285,20 @@ def _best_views(case: Case) -> dict[int, list[int]]:
         slack = np.minimum(slack, sines[sector + 1] * u - cosines[sector + 1] * v)
         slack = np.where(ring > 0, np.minimum(slack, cosines[ring] * away - along), slack)
         slack = np.minimum(slack, along - cosines[ring + 1] * away)
-        points = np.concatenate([c[:, None], corners], axis=1) if case.whole else c[:, None]
-        for ray in np.moveaxis(points - np.array(place), 1, 0):
-            depth, across, upwards = ray @ forward, ray @ right, ray @ np.cross(right, forward)
-            slack = np.minimum(slack, depth)
-            slack = np.minimum(slack, case.half[0] * depth - np.abs(across))
-            slack = np.minimum(slack, case.half[1] * depth - np.abs(upwards))
-        for panel in np.flatnonzero(slack > SLACK_M).tolist():
-            best[panel * n + int(ring[panel]) * 4 * rings + int(sector[panel])].append((-float(slack[panel]), number))
-    return {e: [view for _, view in sorted(found)] for e, found in sorted(best.items())}
+        panels = np.flatnonzero(slack > SLACK_M)
+        points = np.concatenate([c[panels, None], corners[panels]], axis=1) if case.whole else c[panels, None]
+        depth, across, upwards = (
+            (points - np.array(place)) @ axis for axis in (forward, right, np.cross(right, forward))
+        )
+        in_picture = np.minimum(case.half[0] * depth - np.abs(across), case.half[1] * depth - np.abs(upwards))
+        slack = np.minimum(slack[panels], np.minimum(depth, in_picture).min(axis=1))
+        kept = np.flatnonzero(slack > SLACK_M)
+        elements = panels[kept] * n + ring[panels[kept]] * 4 * rings + sector[panels[kept]]
+        found.append((elements, slack[kept], np.full(len(kept), number)))
+    elements, slacks, views = (np.concatenate(each) for each in zip(*found, strict=True))
+    order = np.lexsort((views, -slacks, elements))
+    elements, starts = np.unique(elements[order], return_index=True)
+    return elements, np.append(starts, len(order)), views[order]
 
 
 class _Patches:

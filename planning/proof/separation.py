@@ -15,7 +15,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.jit import chunks, kernel, run_parallel
+from planning.base.jit import chunks, inline, kernel, run_parallel
 
 Array = NDArray[np.float64]
 
@@ -29,6 +29,9 @@ SHRINK = 1.0 - 1e-11
 MOST_DIRECTIONS = 64
 SETS_PER_CHUNK = 64
 MOST_STEPS = 64
+
+BLOCK = 32
+"""Triangles that are looked at together first: sites list neighbours one after the other."""
 
 
 @kernel
@@ -118,9 +121,30 @@ def _least_norm(points: Array, nearest: Array) -> None:
         size = _least_of_simplex(simplex, size + 1, nearest)
 
 
+@inline
+def _away2(low: Array, high: Array, box_low: Array, box_high: Array) -> float:
+    """Squared distance of two boxes."""
+    x = max(low[0] - box_high[0], box_low[0] - high[0], 0.0)
+    y = max(low[1] - box_high[1], box_low[1] - high[1], 0.0)
+    z = max(low[2] - box_high[2], box_low[2] - high[2], 0.0)
+    return float(x * x + y * y + z * z)
+
+
 @kernel
-def separate(points: Array, triangles: Array, low: Array, high: Array, gap: float, found: Array) -> int:
+def separate(
+    points: Array,
+    triangles: Array,
+    low: Array,
+    high: Array,
+    block_low: Array,
+    block_high: Array,
+    gap: float,
+    found: Array,
+) -> int:
     """Fill `found` with directions that separate a convex set from all triangles by a gap.
+
+    Triangles are looked at one by one only in blocks that are near, or that a direction does not close as a whole. No
+    rounding makes a difference: a box is never farther, and never ends earlier along a direction, than what it holds.
 
     Parameters
     ----------
@@ -128,6 +152,8 @@ def separate(points: Array, triangles: Array, low: Array, high: Array, gap: floa
         Corners of the set, shape (k, 3).
     triangles, low, high
         Shape (t, 3, 3), and their boxes, shape (t, 3).
+    block_low, block_high
+        Boxes of `BLOCK` triangles each, in their order, shape (b, 3).
     found
         Shape (most, 3).
 
@@ -136,30 +162,37 @@ def separate(points: Array, triangles: Array, low: Array, high: Array, gap: floa
     n
         How many directions; -1 - k where triangle k is nearer, or where there were too many.
     """
-    n_triangles, n, k_points = len(triangles), 0, len(points)
-    is_open = np.ones(n_triangles, np.bool_)
-    away = np.empty(n_triangles)
+    n_triangles, n_blocks, n, k_points = len(triangles), len(block_low), 0, len(points)
+    is_open, away = np.ones(n_triangles, np.bool_), np.empty(n_triangles)
+    is_block_open, is_looked_into = np.ones(n_blocks, np.bool_), np.zeros(n_blocks, np.bool_)
+    block_away = np.empty(n_blocks)
     box_low, box_high = np.empty(3), np.empty(3)
     for axis in range(3):
         box_low[axis], box_high[axis] = points[:, axis].min(), points[:, axis].max()
-    for t in range(n_triangles):
-        away[t] = 0.0
-        for axis in range(3):
-            between = max(low[t, axis] - box_high[axis], box_low[axis] - high[t, axis], 0.0)
-            away[t] += between * between
+    for block in range(n_blocks):
+        block_away[block] = _away2(block_low[block], block_high[block], box_low, box_high)
     differences, way = np.empty((3 * k_points, 3)), np.empty(3)
     while True:
         nearest, best = -1, np.inf
-        for t in range(n_triangles):
-            if is_open[t] and away[t] < best:
-                nearest, best = t, away[t]
+        for block in range(n_blocks):
+            if not is_block_open[block] or block_away[block] >= best:
+                continue
+            first, last = block * BLOCK, min((block + 1) * BLOCK, n_triangles)
+            if not is_looked_into[block]:
+                is_looked_into[block] = True
+                for t in range(first, last):
+                    away[t] = _away2(low[t], high[t], box_low, box_high)
+            for t in range(first, last):
+                if is_open[t] and away[t] < best:
+                    nearest, best = t, away[t]
         if nearest < 0:
             return n
         if n == len(found):
             return -1 - nearest
         for i in range(k_points):
             for j in range(3):
-                differences[3 * i + j] = points[i] - triangles[nearest, j]
+                for axis in range(3):
+                    differences[3 * i + j, axis] = points[i, axis] - triangles[nearest, j, axis]
         _least_norm(differences, way)
         length = np.sqrt(way[0] ** 2 + way[1] ** 2 + way[2] ** 2)
         if not length > 0.0:
@@ -172,24 +205,34 @@ def separate(points: Array, triangles: Array, low: Array, high: Array, gap: floa
             level = min(level, x * points[i, 0] + y * points[i, 1] + z * points[i, 2])
         level -= gap + SLACK_M
         n += 1
-        for t in range(n_triangles):
-            if is_open[t]:
-                most = -np.inf
-                for j in range(3):
-                    most = max(most, x * triangles[t, j, 0] + y * triangles[t, j, 1] + z * triangles[t, j, 2])
-                if most <= level:
-                    is_open[t] = False
-        if is_open[nearest]:
+        for block in range(n_blocks):
+            if not is_block_open[block]:
+                continue
+            most = (block_high[block, 0] if x > 0.0 else block_low[block, 0]) * x
+            most += (block_high[block, 1] if y > 0.0 else block_low[block, 1]) * y
+            most += (block_high[block, 2] if z > 0.0 else block_low[block, 2]) * z
+            if most <= level:
+                is_block_open[block] = False
+                continue
+            is_block_open[block] = False
+            for t in range(block * BLOCK, min((block + 1) * BLOCK, n_triangles)):
+                if is_open[t]:
+                    most = -np.inf
+                    for j in range(3):
+                        most = max(most, x * triangles[t, j, 0] + y * triangles[t, j, 1] + z * triangles[t, j, 2])
+                    is_open[t] = not most <= level
+                    is_block_open[block] = is_block_open[block] or is_open[t]
+        if is_block_open[nearest // BLOCK] and is_open[nearest]:
             return -1 - nearest
 
 
 @kernel
 def _separate_all(
-    points: Array, counts: NDArray[np.int64], triangles: Array, low: Array, high: Array, gaps: Array, found: Array
+    points: Array, counts: NDArray[np.int64], triangles: Array, boxes: tuple[Array, ...], gap: float, found: Array
 ) -> NDArray[np.int64]:
     n = np.empty(len(points), np.int64)
     for i in range(len(points)):
-        n[i] = separate(points[i, : counts[i]], triangles, low, high, gaps[i], found[i])
+        n[i] = separate(points[i, : counts[i]], triangles, boxes[0], boxes[1], boxes[2], boxes[3], gap, found[i])
     return n
 
 
@@ -199,23 +242,33 @@ class Separator:
     def __init__(self, table: DirectionTable, triangles: Array) -> None:
         self._table = table
         self.triangles = np.ascontiguousarray(triangles, np.float64).reshape(-1, 3, 3)
-        self._low, self._high = self.triangles.min(axis=1), self.triangles.max(axis=1)
+        low, high = self.triangles.min(axis=1), self.triangles.max(axis=1)
+        starts = np.arange(0, len(low), BLOCK)
+        of_blocks = [
+            f.reduceat(ends, starts) if len(starts) else ends for f, ends in ((np.minimum, low), (np.maximum, high))
+        ]
+        self._boxes = low, high, of_blocks[0], of_blocks[1]
 
-    def directions(self, sets: list[Array], gap_m: float) -> list[list[int] | None]:
-        """For each convex set, corners of shape (k, 3), the numbers of directions; None where it is nearer."""
+    def directions(self, sets: Sequence[Array] | Array, gap_m: float) -> list[list[int] | None]:
+        """For each convex set, corners of shape (k, 3), the numbers of directions; None where it is nearer.
+
+        Sets that have equally many corners may come as one array, shape (n, k, 3).
+        """
         if not len(self.triangles):
             return [[] for _ in sets]
         parts = chunks(len(sets), SETS_PER_CHUNK)
         return [each for part in run_parallel(self._part, [(sets[a:b], gap_m) for a, b in parts]) for each in part]
 
-    def _part(self, sets: list[Array], gap_m: float) -> list[list[int] | None]:
+    def _part(self, sets: Sequence[Array] | Array, gap_m: float) -> list[list[int] | None]:
         counts = np.array([len(each) for each in sets], np.int64)
-        points = np.zeros((len(sets), int(counts.max()), 3))
-        for i, each in enumerate(sets):
-            points[i, : len(each)] = each
+        if isinstance(sets, np.ndarray):
+            points = np.ascontiguousarray(sets)
+        else:
+            points = np.zeros((len(sets), int(counts.max()), 3))
+            for i, each in enumerate(sets):
+                points[i, : len(each)] = each
         found = np.empty((len(sets), MOST_DIRECTIONS, 3))
-        gaps = np.full(len(sets), gap_m)
-        n = _separate_all(points, counts, self.triangles, self._low, self._high, gaps, found)
+        n = _separate_all(points, counts, self.triangles, self._boxes, gap_m, found)
         return [None if n[i] < 0 else self._table.numbers(found[i, : n[i]]) for i in range(len(sets))]
 
 
