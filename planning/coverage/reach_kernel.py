@@ -164,10 +164,10 @@ def _is_witness(p: Array, panel: Array, bounds: Array, limits: Limits) -> bool:
 
 
 @kernel
-def _is_too_low(centre: Array, half: Array, limits: Limits) -> bool:
-    """Whether the whole cell lies too low above the terrain, or where nothing is known of it."""
-    n_rows, n_columns = limits.terrain.shape
-    west, south, step = limits.grid
+def is_too_low(centre: Array, half: Array, terrain: Array, grid: tuple[float, float, float], min_height: float) -> bool:
+    """Whether the whole cell lies too low above the terrain, or where nothing is known of it; as in `Limits`."""
+    n_rows, n_columns = terrain.shape
+    west, south, step = grid
     first_column = int(max(np.floor((centre[0] - half[0] - west) / step), 0.0))
     last_column = int(min(np.ceil((centre[0] + half[0] - west) / step), n_columns - 1.0))
     first_row = int(max(np.floor((centre[1] - half[1] - south) / step), 0.0))
@@ -177,9 +177,9 @@ def _is_too_low(centre: Array, half: Array, limits: Limits) -> bool:
     lowest = np.inf
     for row in range(first_row, last_row + 1):
         for column in range(first_column, last_column + 1):
-            if limits.terrain[row, column] < lowest:
-                lowest = limits.terrain[row, column]
-    return bool(centre[2] + half[2] < lowest + limits.min_height - PROOF_SLACK_M)
+            if terrain[row, column] < lowest:
+                lowest = terrain[row, column]
+    return bool(centre[2] + half[2] < lowest + min_height - PROOF_SLACK_M)
 
 
 @kernel
@@ -235,7 +235,7 @@ def decide_section(
         radius = np.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2)
         if _misses_section(offset, half, radius, panel, bounds, limits):
             continue
-        if limits.terrain.size > 0 and _is_too_low(centre, half, limits):
+        if limits.terrain.size > 0 and is_too_low(centre, half, limits.terrain, limits.grid, limits.min_height):
             continue
         reach = limits.need_distance + radius
         clearance = np.sqrt(nearest_d2(solids.bvh, centre, reach * reach))

@@ -5,6 +5,7 @@ of the reasons that the verifier knows. Each test here keeps more slack than its
 
 - a plane has the section on one side and the box on the other: behind the panel, beside the section's wedge, outside
   its outer cone, or beyond the largest distance;
+- the box lies too low above the terrain;
 - the box lies in a convex cone where no place of the section is: below its ring, or out of the gimbal's reach;
 - each corner is nearer than the minimum distance to one triangle, and so is then every place of the box;
 - the box lies in the shadow of a patch of triangles, as seen from where lines of sight end.
@@ -18,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.jit import inline, kernel
+from planning.coverage.reach_kernel import is_too_low
 from planning.geo.bvh import Bvh, build_bvh
 
 Array = NDArray[np.float64]
@@ -25,7 +27,10 @@ Array = NDArray[np.float64]
 SLACK_M = 4e-7
 RATIO_SLACK = 4e-9
 
-PLANE, CONE, CUT_X = -1, -2, -5
+HEIGHT_SLACK_M = 2e-3
+"""The verifier keeps 1 mm: beside steep cells the last digits of a box's border make more than of other lengths."""
+
+PLANE, CONE, CUT_X, LOW = -1, -2, -5, -6
 """Codes of leaves and cuts (X, Y, Z: -5, -4, -3); triangle k is 2 k, patch k is 2 k + 1."""
 
 SMALLEST_M = 0.01
@@ -45,6 +50,14 @@ class Panel(NamedTuple):
     outer: Array
     cone_axes: Array
     cone_cosines: Array
+
+
+class Terrain(NamedTuple):
+    """Upper bounds of the ground (rows, columns), without any where it is level; west, south and step; height kept."""
+
+    z: Array
+    grid: tuple[float, float, float]
+    min_height: float
 
 
 class Shadows(NamedTuple):
@@ -215,7 +228,15 @@ def _shadow(centre: Array, half: Array, shadows: Shadows) -> int:
 
 @kernel
 def exclude(
-    panel: Panel, shadows: Shadows, bvh: Bvh, low: Array, high: Array, near: float, far: float, codes: NDArray[np.int64]
+    panel: Panel,
+    shadows: Shadows,
+    terrain: Terrain,
+    bvh: Bvh,
+    low: Array,
+    high: Array,
+    near: float,
+    far: float,
+    codes: NDArray[np.int64],
 ) -> int:
     """Codes of a tree in `codes`, in the order of the text; how many, or 0 where no tree was found."""
     lows, highs = np.empty((256, 3)), np.empty((256, 3))
@@ -235,6 +256,10 @@ def exclude(
             codes[n] = PLANE
         elif _is_in_cone(offset, half, panel):
             codes[n] = CONE
+        elif terrain.z.size > 0 and is_too_low(
+            centre, half, terrain.z, terrain.grid, terrain.min_height - HEIGHT_SLACK_M
+        ):
+            codes[n] = LOW
         else:
             triangle = _near_triangle(centre, half, bvh, near)
             patch = _shadow(centre, half, shadows) if triangle < 0 and len(shadows.numbers) else -1
@@ -266,4 +291,5 @@ def compile_kernels() -> None:
     axes = np.eye(3)
     panel = Panel(np.zeros(3), axes, axes, np.array([1.0, 0.0]), axes[:1], np.array([0.5]))
     codes = np.empty(8, np.int64)
-    exclude(panel, no_shadows(np.zeros(3)), build_bvh(axes[None]), np.zeros(3), np.ones(3), 1.0, 10.0, codes)
+    terrain = Terrain(np.zeros((2, 2)), (0.0, 0.0, 1.0), 0.0)
+    exclude(panel, no_shadows(np.zeros(3)), terrain, build_bvh(axes[None]), np.zeros(3), np.ones(3), 1.0, 10.0, codes)

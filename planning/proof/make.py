@@ -25,11 +25,12 @@ from planning.base.progress import QUIET, Monitor
 from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
 from planning.coverage.reachability import Reachability, convex_groups
 from planning.geo.bvh import Bvh, build_bvh
-from planning.proof.boxes import CONE, CUT_X, PLANE, Panel, Shadows, exclude, no_shadows
+from planning.proof.boxes import CONE, CUT_X, LOW, PLANE, Panel, Shadows, Terrain, exclude, no_shadows
 from planning.proof.reflight_verify import Case, Pane, Refused
 from planning.proof.separation import DirectionTable, Separator
 from planning.routing.rally import return_height
 from planning.site.free_space import unchecked_space
+from planning.site.ground import decide_terrain
 from planning.site.records import SiteModel
 
 Array = NDArray[np.float64]
@@ -95,6 +96,9 @@ def proof_of(
     for name, path, written in zip(("site", "plan"), (site_path, plan_path), contents, strict=True):
         content[name] = {"name": path.name, "sha256": hashlib.sha256(written).hexdigest()}
     content["meshes"] = []
+    departure = decide_terrain(site_model.site)
+    if departure.decided_by == "scene" and not departure.on:
+        content["level_within_m"] = math.ceil(1000.0 * departure.size + 1.0) / 1000.0
     try:
         case = Case(site_path.parent, [*contents, _encoded(content)])
     except (Refused, ValueError, LookupError, TypeError, OSError):  # such as meshes that the verifier does not read
@@ -235,13 +239,13 @@ class _Maker:
         case = self.case
         elements = np.flatnonzero(reachability.verdicts.reshape(-1) == UNREACHABLE)
         patches = _Patches(self.solids.triangles) if case.occlusion == "on" else None
-        bvh = build_bvh(self.solids.triangles)
+        terrain, bvh = _terrain(case), build_bvh(self.solids.triangles)
         shadows = {panel: _shadows(case.panes[panel], patches) for panel in set((elements // case.n).tolist())}
         texts: list[str] = []
         parts = chunks(len(elements), SECTIONS_PER_CHUNK)
         for start, stop in chunks(len(parts), 8):
             monitor.report(say("writing the proof"), start, len(parts))
-            work = [(case, elements[a:b], shadows, bvh) for a, b in parts[start:stop]]
+            work = [(case, elements[a:b], shadows, terrain, bvh) for a, b in parts[start:stop]]
             texts += [text for part in run_parallel(_trees, work) for text in part]
         found = [[e, text] for e, text in zip(elements.tolist(), texts, strict=True) if text]
         return {"boxes": found, "patches": [] if patches is None else patches.rows}
@@ -400,14 +404,24 @@ def _cross(a: Array, b: Array) -> Array:
     return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
 
 
-def _trees(case: Case, elements: NDArray[np.int64], shadows: dict[int, Shadows], bvh: Bvh) -> list[str]:
+def _terrain(case: Case) -> Terrain:
+    """The terrain that heights count from, as the search takes it."""
+    if case.terrain is None:
+        return Terrain(np.zeros((0, 0)), (0.0, 0.0, 1.0), 0.0)
+    (columns, rows), (west, south) = case.terrain.size, case.terrain.corner
+    return Terrain(np.array(case.terrain.z).reshape(rows, columns), (west, south, case.terrain.step), case.height_m)
+
+
+def _trees(
+    case: Case, elements: NDArray[np.int64], shadows: dict[int, Shadows], terrain: Terrain, bvh: Bvh
+) -> list[str]:
     """Trees of some sections; an empty text where none was found."""
     low, high = np.array(case.low), np.array(case.high)
     codes = np.empty(MOST_CODES, np.int64)
     texts = []
     for element in elements.tolist():
         panel = element // case.n
-        n = exclude(_panel(case, element), shadows[panel], bvh, low, high, case.near_m, case.far_m, codes)
+        n = exclude(_panel(case, element), shadows[panel], terrain, bvh, low, high, case.near_m, case.far_m, codes)
         texts.append("".join(map(_letter, codes[:n].tolist())))
     return texts
 
@@ -415,7 +429,7 @@ def _trees(case: Case, elements: NDArray[np.int64], shadows: dict[int, Shadows],
 def _letter(code: int) -> str:
     if code >= 0:
         return f"{'dq'[code % 2]}{code // 2}."
-    return {PLANE: "p", CONE: "c", CUT_X: "X", CUT_X + 1: "Y", CUT_X + 2: "Z"}[code]
+    return {PLANE: "p", CONE: "c", LOW: "t", CUT_X: "X", CUT_X + 1: "Y", CUT_X + 2: "Z"}[code]
 
 
 def _panel(case: Case, element: int) -> Panel:

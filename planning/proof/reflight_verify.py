@@ -31,6 +31,7 @@ from typing import Any
 E = 1e-7  # metres kept in comparisons of lengths
 R = 1e-9  # kept in comparisons of sines, and as a part of durations
 SAME_M, CLIMB_M, SIGHT_OFFSET_M, USUAL_HEIGHT_M, UNKNOWN_M = 1e-3, 2.0, 0.15, 5.0, 1e9
+LEVEL_M = 0.51  # a plan may take terrain that departs less from level ground as level
 MISSION_M, MISSION_DEG = 0.01, 0.01  # how far a mission file may be off the plan
 FALSE, NOT_PROVED, PROVED = "false", "not proved", "proved"
 Vec = tuple[float, ...]
@@ -208,7 +209,16 @@ class Terrain:
         fits = min(self.size) >= 2 and len(content) == 4 * self.size[0] * self.size[1] and reader.eof
         demand(fits, "the terrain has other heights than nodes")
         nodes = [mm for (mm,) in struct.iter_unpack("<i", content)]
-        self.z = [mm / 1000.0 + accuracy if mm > -(2**31) else UNKNOWN_M for mm in nodes]
+        self.z: list[float] = [mm / 1000.0 + accuracy if mm > -(2**31) else UNKNOWN_M for mm in nodes]
+
+    def nodes(self, low: Vec, high: Vec) -> list[float]:
+        """Heights at the corners of all cells that a box touches; beyond the grid nothing is known."""
+        first = [floor((low[i] - self.corner[i]) / self.step) for i in (0, 1)]
+        last = [ceil((high[i] - self.corner[i]) / self.step) for i in (0, 1)]
+        is_inside = min(first) >= 0 and all([b < n for b, n in zip(last, self.size, strict=True)])
+        columns, rows = [range(max(a, 0), min(b + 1, n)) for a, b, n in zip(first, last, self.size, strict=True)]
+        found = [self.z[row * self.size[0] + column] for row in rows for column in columns]
+        return found if is_inside else [*found, UNKNOWN_M]
 
     def clearance(self, a: Vec, b: Vec) -> float:
         """Least height of a leg above the ground: in each cell a polynomial of second degree along the way."""
@@ -290,8 +300,16 @@ class Case:
         self.solids, self.no_fly = Solids(triangles), Solids(walls)
         self.panes, self.home = [Pane(each) for each in corners], vector(self.site.get("home_enu_m"), "home")
         terrain = get(self.site, "terrain", dict, None)
-        is_used = terrain is not None and get(known(terrain, "the terrain"), "use", str, "auto") != "off"
-        self.terrain = Terrain(terrain) if is_used else None
+        use = "off" if terrain is None else get(known(terrain, "the terrain"), "use", str, "auto")
+        self.terrain, self.ground = None if use == "off" else Terrain(terrain), "level ground"
+        level_within = number(self.proof, "level_within_m", 0.0, LEVEL_M, default=None)
+        if self.terrain and level_within is None:
+            self.ground = "the terrain"
+        elif self.terrain:
+            ends = [vector(self.air.get(name), name) for name in ("min_enu_m", "max_enu_m")]
+            departs = max([abs(z - number(self.air, "ground_z_m")) for z in self.terrain.nodes(*ends)])
+            demand(use == "auto" and departs <= level_within - E, "the terrain is not as level as the proof says")
+            self.terrain, self.ground = None, f"level ground, within {level_within:g} m of which the terrain lies"
 
     def _read_limits(self, camera: Any, limits: Any) -> None:
         low, self.high = [vector(self.air.get(name), name) for name in ("min_enu_m", "max_enu_m")]
@@ -384,7 +402,7 @@ class Case:
             is_false = not inside or -1e6 < spare < -2.0 * E
             why = f"sortie {s + 1}, leg {k + 1} leaves the airspace, or is lower than {self.height_m:g} m over ground"
             demand(inside and spare >= 0.0, why, FALSE if is_false else NOT_PROVED)
-        return f"paths stay in the airspace and {self.height_m:g} m above the ground, but for the column above home"
+        return f"outside the column above home, paths stay in the airspace and {self.height_m:g} m above {self.ground}"
 
     def _leaves(self, solids: Solids) -> None:
         """Home is outside: the polyline `outside` of the proof leads from it past all triangles, meeting none."""
@@ -408,14 +426,17 @@ class Case:
         return f"every leg keeps {self.near_m:g} m from every panel, mesh and obstacle, and lies outside of them"
 
     def no_fly_(self) -> str:
-        demand(not get(self.site, "zones", list, []), "files of geo-zones are not looked at")
         if not self.no_fly.triangles:
             return "the site has no no-fly volumes"
         for s, k, a, b in self.legs:
             kept = self.no_fly.clear([a, b], self._named(self.proof["no_fly"][s][k]), 0.0)
             demand(kept, f"sortie {s + 1}, leg {k + 1} may enter a no-fly volume")
         self._leaves(self.no_fly)
-        return "no leg enters a no-fly volume"
+        return "no leg enters a no-fly volume of the site"
+
+    def zones(self) -> str:
+        demand(not get(self.site, "zones", list, []), "files of geo-zones are not looked at")
+        return "the site names no files of geo-zones"
 
     def return_(self, height_m: float | None = None) -> str:
         above_m = number(self.proof, "return_height_m", 0.0) if height_m is None else height_m
@@ -510,11 +531,13 @@ class Case:
         for element, x, y, z, by in get(self.proof, "witnesses", list):
             place = vector([x, y, z], "witnesses")
             inside = all([a <= p <= b for a, p, b in zip(self.low, place, self.high, strict=True)])
+            inside = inside and (not self.terrain or self.terrain.clearance(place, place) >= self.height_m + E)
             inside = inside and self.solids.clear([place], self._named(by), self.near_m)
             shown += inside and self.lies_in(place, place_in(element, total, "witnesses"), by)
         demand(total - len(done) <= bound, f"{len(done)} of {total - bound:g} sections are shown to be out of reach")
-        return (f"no flight in this airspace, with this gimbal and {self.near_m:g} m from everything covers more than "
-                f"{bound:g} of {total} sections ({shown} not covered have a place shown)")
+        return (f"no flight in this airspace, {self.height_m:g} m above {self.ground}, with this gimbal and "
+                f"{self.near_m:g} m from everything covers more than {bound:g} of {total} sections "
+                f"({shown} not covered have a place shown)")
 
     def _exclude(self, element: int, text: str) -> None:
         """A tree of boxes leaves no place from which a section is seen.
@@ -528,7 +551,7 @@ class Case:
         cones += [(pane.n, self.angles[ring][1])] if ring > 0 else []
         boxes, at = list[tuple[Vec, Vec]]([(self.low, self.high)]), 0
         while boxes:
-            (low, high), leaf = boxes.pop(), re.compile(r"[XYZpc]|[dq]([0-9]{1,7})\.").match(text, at)
+            (low, high), leaf = boxes.pop(), re.compile(r"[XYZpct]|[dq]([0-9]{1,7})\.").match(text, at)
             demand(leaf is not None, "a tree of the proof is damaged")
             at, kind, k = leaf.end(), leaf[0][0], int(leaf[1] or 0)  # type: ignore[union-attr, index]
             if kind in "XYZ":
@@ -550,6 +573,9 @@ class Case:
                 holds = any([max([dot(m, d) for d in rays]) <= limit - E for m, limit in forms])
             elif kind == "c":  # in the cone below the section's ring, or where the gimbal does not reach
                 holds = any([all([dot(axis, d) >= cosine * length(d) + E for d in rays]) for axis, cosine in cones])
+            elif kind == "t":  # too low above the terrain
+                heights = self.terrain.nodes(low, high) if self.terrain else [-UNKNOWN_M]
+                holds = high[2] <= min(heights) + self.height_m - SAME_M
             elif kind == "d":  # too close to a triangle
                 holds = all([distance(corner, self.solids.triangles[k]) <= self.near_m - E for corner in corners])
             else:
@@ -767,8 +793,8 @@ def flies(case: Case, mission: Mission) -> int:
 
 CLAIMS = (
     ("files", Case.files), ("sorties", Case.sorties_), ("gimbal", Case.gimbal), ("airspace", Case.airspace),
-    ("distance", Case.distance), ("no-fly", Case.no_fly_), ("return", Case.return_), ("battery", Case.battery),
-    ("apart", Case.apart), ("coverage", Case.coverage), ("reachable", Case.reachable))
+    ("distance", Case.distance), ("no-fly", Case.no_fly_), ("zones", Case.zones), ("return", Case.return_),
+    ("battery", Case.battery), ("apart", Case.apart), ("coverage", Case.coverage), ("reachable", Case.reachable))
 def judged(prove: Any) -> tuple[str, str]:
     """Verdict and words of a claim. What trips over a file proves nothing."""
     try:

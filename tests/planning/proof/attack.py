@@ -63,6 +63,8 @@ SPEAKS_OF: dict[str, tuple[tuple[str, ...] | None, tuple[str, ...]]] = {
 }
 """Parts of the site, None for all of it with its meshes, and of the plan: of the claims that take long to judge."""
 
+OF_PROOF = ("return_height_m", "return_kept_m", "level_within_m")
+
 
 class Judge:
     """A judge that remembers: most tamperings leave most of what a claim speaks of as it was."""
@@ -97,7 +99,7 @@ def _spoken_of(case: Case, claim: str) -> tuple[object, ...] | None:
         read = [each for each in case.files if each not in ("plan.json", "plan.proof", *missions)]
     try:
         parts = [case.site.get(part) for part in of_site or ()] + [case.plan.get(part) for part in of_plan]
-        parts += [case.json("plan.proof").get(name) for name in ("return_height_m", "return_kept_m")]
+        parts += [case.json("plan.proof").get(name) for name in OF_PROOF]
     except Exception:  # a damaged file breaks readers in ways without number
         return None
     return claim, json.dumps(parts), *((each, case.files[each]) for each in read)

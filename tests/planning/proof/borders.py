@@ -404,6 +404,16 @@ def _of_terrain(probe: Probe) -> Iterator[Any]:
     legs += [[(7.0, 2.0, 9.0), (7.0, 9.5, 3.0)], [(-3.0, 9.5, 9.0), (7.0, 9.5, 3.0)]]
     for a, b in legs:
         yield terrain.clearance(a, b)
+        yield terrain.nodes(
+            [min(p, q) for p, q in zip(a, b, strict=True)], [max(p, q) for p, q in zip(a, b, strict=True)]
+        )
+    for low, high in (
+        ((-3.1, 2.0), (7.0, 9.5)),
+        ((-3.0, 1.9), (7.0, 9.5)),
+        ((-3.0, 2.0), (7.1, 9.6)),
+        ((9.0, 9.0),) * 2,
+    ):
+        yield terrain.nodes(low, high)
     for axis, far in [(axis, far) for axis in range(2) for far in (-50.0, 50.0)]:
         a = (1.0, 4.0, 9.0)
 

@@ -56,6 +56,9 @@ HOME_M = Fraction(1, 1000)
 """How far from home, in each coordinate, a path may begin and end, and vertices may be off their viewpoints."""
 
 
+ENDS = ("min_enu_m", "max_enu_m")
+
+
 class MeaninglessError(Exception):
     """A file cannot be read, or lacks what a claim speaks of."""
 
@@ -222,10 +225,30 @@ def floor_z(case: Case) -> Fraction:
     """Lowest height of flights beside the column."""
     airspace, lowest = case.site["airspace"], lowest_height(case)
     terrain = case.scene.terrain
-    if terrain is None:
+    if terrain is None or level_within(case) is not None:
         return max(number(airspace["min_enu_m"][2]), number(airspace["ground_z_m"]) + lowest)
     known = [height for row in upper_heights(terrain) for height in row if height is not None]
     return max(number(airspace["min_enu_m"][2]), min(known) + lowest)
+
+
+def level_within(case: Case) -> Fraction | None:
+    """How far the proof says that the terrain departs from level ground; None where heights count from the terrain."""
+    stated = case.json("plan.proof").get("level_within_m")
+    return None if stated is None else number(stated)
+
+
+def is_level(case: Case, within: Fraction) -> bool:
+    """Whether the upper bound of the ground is known and as level as stated below the whole airspace."""
+    airspace, terrain = case.site["airspace"], case.scene.terrain or {}
+    z, level, step = upper_heights(terrain), number(airspace["ground_z_m"]), Fraction(terrain["step_m"])
+    spans = []
+    for k, n in enumerate((len(z[0]), len(z))):
+        low, high = ((number(airspace[name][k]) - number(terrain["west_south_m"][k])) / step for name in ENDS)
+        if low < 0 or high > n - 1:
+            return False
+        spans.append(slice(math.floor(low), math.ceil(high) + 1))
+    nodes = [height for row in z[spans[1]] for height in row[spans[0]]]
+    return terrain.get("use", "auto") == "auto" and all(h is not None and abs(h - level) <= within for h in nodes)
 
 
 def lowest_height(case: Case) -> Fraction:
@@ -237,8 +260,10 @@ def lowest_height(case: Case) -> Fraction:
 
 def airspace(case: Case) -> bool:
     """Paths in the box and above the lowest height, but for the column."""
-    low, high = (fractions(_point(case.site["airspace"][name])) for name in ("min_enu_m", "max_enu_m"))
-    home, floor = fractions(case.home), floor_z(case)
+    low, high = (fractions(_point(case.site["airspace"][name])) for name in ENDS)
+    home, floor, within = fractions(case.home), floor_z(case), level_within(case)
+    if case.scene.terrain is not None and within is not None and not is_level(case, within):
+        return False
     for path in case.paths:
         vertices = [fractions(vertex) for vertex in path]
         in_column = [_same(vertex[:2], home[:2]) for vertex in vertices]
@@ -249,7 +274,7 @@ def airspace(case: Case) -> bool:
             beside = not in_column[k] or any(not in_column[j] for j in neighbours)
             if vertex[2] < (floor if beside else min(home[2], floor)) - (0 if beside else HOME_M):
                 return False
-        if case.scene.terrain is not None:
+        if case.scene.terrain is not None and within is None:
             for k, (a, b) in enumerate(legs(path)):
                 above = None if in_column[k] and in_column[k + 1] else least_above(case.scene.terrain, a, b)
                 if not (in_column[k] and in_column[k + 1]) and (above is None or above < lowest_height(case)):
@@ -274,10 +299,13 @@ def distance(case: Case) -> bool:
 
 
 def no_fly(case: Case) -> bool:
-    """No leg touches a no-fly volume."""
-    if case.site.get("zones"):
-        return False
+    """No leg touches a no-fly volume of the site."""
     return not any(enters_no_fly(case.scene, a, b) for path in case.paths for a, b in legs(path))
+
+
+def zones(case: Case) -> bool:
+    """There are no files of geo-zones."""
+    return not case.site.get("zones")
 
 
 def return_home(case: Case) -> bool | None:
@@ -426,6 +454,10 @@ def can_see(case: Case, element: int, place: Point) -> bool:
     low, high = (fractions(_point(case.site["airspace"][name])) for name in ("min_enu_m", "max_enu_m"))
     if not all(low[k] <= at[k] <= high[k] for k in range(3)) or at[2] < floor_z(case):
         return False
+    if scene.terrain is not None and level_within(case) is None:
+        above = least_above(scene.terrain, place, place)
+        if above is None or above < lowest_height(case):
+            return False
     panel_index, section = divmod(element, n_sections(case))
     if panel_index >= len(scene.panels):
         return False
@@ -474,6 +506,7 @@ CLAIMS: dict[str, Callable[[Case], bool | None]] = {
     "column": column,
     "distance": distance,
     "no-fly": no_fly,
+    "zones": zones,
     "return": return_home,
     "battery": battery,
     "apart": apart,

@@ -260,6 +260,15 @@ def terrain(random: Random, files: dict[str, bytes]) -> None:
         )
         record[name] = value
     edit(files, "site.json", lambda site: site.update(terrain=record))
+    if random.random() < 0.3:  # as level as the proof says, nearly, or not at all
+        within = random.choice((0.3, 0.5, 0.51, 0.52, 2.0))
+        level = [
+            random.choice((-1, 1)) * round(1000.0 * within * random.choice((0.0, 0.9, 0.999, 1.0))) for _ in heights
+        ]
+        level[random.randrange(144)] += random.choice((0, 0, 1, -1, 300))
+        record["upper"] = base64.b64encode(zlib.compress(struct.pack("<144i", *level))).decode()
+        edit(files, "site.json", lambda site: site.update(terrain=record))
+        edit(files, "plan.proof", lambda proof: proof.update(level_within_m=within))
 
 
 @kind("site: a mesh damaged or renamed")
@@ -511,7 +520,7 @@ def boxes(random: Random, files: dict[str, bytes]) -> None:
         elif how == 1 and trees:
             chosen = random.choice(trees)
             letters = list(chosen[1])
-            letters[random.randrange(len(letters))] = random.choice("XYZnlhoigGfdq0123456789.")
+            letters[random.randrange(len(letters))] = random.choice("XYZpctdq0123456789.")
             chosen[1] = "".join(letters)
         elif how == 2 and trees:
             trees.append([random.randrange(len(proof["seen"])), random.choice(trees)[1]])
@@ -521,7 +530,7 @@ def boxes(random: Random, files: dict[str, bytes]) -> None:
         elif how == 4 and patches:
             random.choice(patches).clear()
         else:
-            leaf = random.choice(("n", "l", "h", "o", "i", "g", "G", "f", "d0.", "q0.", "d1.", ""))
+            leaf = random.choice(("p", "c", "t", "d0.", "q0.", "d1.", "Xpp", ""))
             trees.append([random.randrange(len(proof["seen"])), leaf])
 
     edit(files, "plan.proof", change)

@@ -26,7 +26,6 @@ from planning.proof.reflight_verify import CLAIMS, Case, Mission, flies, judged
 from planning.request import PlanRequest
 from planning.site.bundled import write_scene
 from planning.site.file import write_site
-from planning.site.records import SiteModel
 from planning.site.terrain import terrain_of
 from tests.planning.plan_cases import kiosk
 
@@ -34,7 +33,7 @@ Change = Callable[[dict[str, Any]], None]
 
 FEW = PlanRequest(
     n_views=12,
-    time_budget_s=60.0,
+    time_budget_s=600.0,
     constraints=Constraints(section_step_deg=45.0),
     greedy=GreedyParameters(n_candidates=200, improve=False, objective="sections"),
 )
@@ -70,8 +69,8 @@ def verdict(folder: Path, claim: str) -> str:
 def test_all_claims_on_a_planned_flight_are_proved(planned: Path) -> None:
     found = verdicts(planned, "kiosk.kmz", "kiosk.waypoints", "kiosk.plan")
     assert set(found.values()) == {"proved"}, found
-    assert list(found)[:11] == [
-        *("files", "sorties", "gimbal", "airspace", "distance", "no-fly", "return", "battery", "apart"),
+    assert list(found)[:12] == [
+        *("files", "sorties", "gimbal", "airspace", "distance", "no-fly", "zones", "return", "battery", "apart"),
         *("coverage", "reachable"),
     ]
 
@@ -197,6 +196,11 @@ def test_a_site_that_grew_is_not_kept_away_from(planned: Path, tmp_path: Path) -
     assert (verdict(folder, "files"), verdict(folder, "distance")) == ("false", "false")
 
 
+def test_files_of_geo_zones_leave_only_the_zones_open(planned: Path, tmp_path: Path) -> None:
+    folder = with_changed(planned, tmp_path, "kiosk.site.json", lambda site: site.update(zones=[{"file": "uas.json"}]))
+    assert [verdict(folder, claim) for claim in ("zones", "no-fly", "distance")] == ["not proved", "proved", "proved"]
+
+
 @pytest.mark.parametrize("name", ["kiosk.site.json", "kiosk.plan.json", "kiosk.plan.proof"])
 @pytest.mark.parametrize("content", [b"", b"{}", b"[1, 2", b'{"format": NaN}', b"\xff\xfe", b"[" * 100_000])
 def test_files_that_cannot_be_read_prove_nothing(planned: Path, tmp_path: Path, name: str, content: bytes) -> None:
@@ -254,21 +258,33 @@ def test_plans_on_bundled_sites_are_proved(tmp_path: Path, scene: str) -> None:
     assert {claim.verdict for claim in found} == {"proved"}, found
 
 
-def on_a_slope() -> SiteModel:
-    """The kiosk on ground that rises by 2 m in 10 m to the north, with waves of 0.3 m."""
+def planned_above(folder: Path, rise: float) -> dict[str, str]:
+    """Verdicts on the kiosk on ground that rises to the north, with waves of 0.3 m."""
     x, y = np.meshgrid(np.arange(-60.0, 61.0, 2.0), np.arange(-60.0, 61.0, 2.0))
-    z = 0.2 * y + 0.3 * np.sin(x / 3.0) * np.cos(y / 4.0)
+    z = rise * y + 0.3 * np.sin(x / 3.0) * np.cos(y / 4.0)
     ground = terrain_of(HeightField(-60.0, -60.0, 2.0, z), z + 0.05, z - 0.05, accuracy_m=0.1)
-    return kiosk(terrain=ground, home_enu_m=(0.0, -30.0, -5.5))
+    model = kiosk(terrain=ground, home_enu_m=(0.0, -30.0, 0.5 - 30.0 * rise))
+    write_mesh(folder / "kiosk.ply", model.building)
+    write_site(folder / "kiosk.site.json", model.site)
+    plan_site(folder / "kiosk.site.json", FEW, folder / "kiosk.plan.json")
+    return verdicts(folder)
+
+
+@pytest.mark.slow
+def test_a_plan_above_terrain_that_is_left_out_as_level_is_proved(tmp_path: Path) -> None:
+    found = planned_above(tmp_path, rise=0.0)
+    assert set(found.values()) == {"proved"}, found
+    stated = json.loads((tmp_path / "kiosk.plan.proof").read_text())["level_within_m"]
+    assert stated == pytest.approx(0.45, abs=0.01)
+    from_terrain = with_changed(
+        tmp_path, tmp_path / "held", "kiosk.plan.proof", lambda proof: proof.pop("level_within_m")
+    )
+    assert verdict(from_terrain, "airspace") == "false"
 
 
 @pytest.mark.slow
 def test_a_plan_on_a_slope_is_proved(tmp_path: Path) -> None:
-    model = on_a_slope()
-    write_mesh(tmp_path / "kiosk.ply", model.building)
-    write_site(tmp_path / "kiosk.site.json", model.site)
-    plan_site(tmp_path / "kiosk.site.json", FEW, tmp_path / "kiosk.plan.json")
-    found = verdicts(tmp_path)
+    found = planned_above(tmp_path, rise=0.2)
     assert set(found.values()) == {"proved"}, found
     steeper = with_changed(
         tmp_path, tmp_path / "steeper", "kiosk.site.json", lambda site: site["terrain"].update(accuracy_m=9.0)
@@ -276,7 +292,7 @@ def test_a_plan_on_a_slope_is_proved(tmp_path: Path) -> None:
     assert verdict(steeper, "airspace") == "false"
 
 
-MOST_LINES, MOST_COLUMNS = 832, 120
+MOST_LINES, MOST_COLUMNS = 860, 120
 """Of the verifier: what can be read in an hour or two. docs/concepts/proof.md states the number."""
 
 
