@@ -55,10 +55,11 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Context:
-    """How to run: quickly or fully, and where pictures go."""
+    """How to run: quickly or fully, where pictures go, and what is recorded already and need not be measured again."""
 
     is_quick: bool
     folder: Path
+    recorded: tuple[Row, ...] = ()
 
     def data(self, path: str) -> Path:
         """A file or folder of the real input data.

@@ -30,17 +30,37 @@ COLUMNS = [field.name for field in fields(Row)]
 RUN_COLUMNS = ["name", "status", "message", "seconds", "is_quick", "machine", "load"]
 
 
-def save(outcome: Outcome, folder: Path) -> None:
-    """Keep the rows and the circumstances of one run; one that was skipped leaves an earlier run's as they are."""
+def save(outcome: Outcome, folder: Path, *, is_added: bool = False) -> None:
+    """Keep the rows and the circumstances of one run; one that was skipped leaves an earlier run's as they are.
+
+    One that added to what was recorded took its own seconds and those recorded.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     if outcome.status == "skipped" and (folder / f"{outcome.name}.csv").exists():
         return
     _write_csv(folder / f"{outcome.name}.csv", COLUMNS, [asdict(row) for row in outcome.rows])
     runs = {run["name"]: run for run in _read_csv(folder / "runs.csv")}
     content = asdict(outcome)
-    content["seconds"], content["load"] = f"{outcome.seconds:.0f}", f"{outcome.load:.1f}"
+    before_s = float(runs[outcome.name]["seconds"]) if is_added and outcome.name in runs else 0.0
+    content["seconds"], content["load"] = f"{before_s + outcome.seconds:.0f}", f"{outcome.load:.1f}"
     runs[outcome.name] = {column: str(content[column]) for column in RUN_COLUMNS}
     _write_csv(folder / "runs.csv", RUN_COLUMNS, runs.values())
+
+
+def recorded_rows(name: str, folder: Path, *, is_quick: bool) -> tuple[Row, ...]:
+    """What `save` kept of a benchmark that was run so; none where it kept nothing."""
+    if not any(run["name"] == name and run["is_quick"] == str(is_quick) for run in _read_csv(folder / "runs.csv")):
+        return ()
+    return tuple(
+        Row(
+            **{column: row[column] for column in ("scene", "what", "unit", "against", "target")},
+            value=_value(row["value"]),
+            ratio=float(row["ratio"]) if row["ratio"] else None,
+            met=row["met"] == "True" if row["met"] else None,
+            seeds=int(row["seeds"]),
+        )
+        for row in _read_csv(folder / f"{name}.csv")
+    )
 
 
 def write_page(path: Path, benchmarks: Sequence[Benchmark], folder: Path) -> None:
@@ -106,11 +126,15 @@ def _ratio(row: Mapping[str, str]) -> str:
 
 
 def _measured(row: Mapping[str, str]) -> str:
+    value = _value(row["value"])
+    return f"{value if isinstance(value, str) else number_text(value)} {row['unit']}".strip()
+
+
+def _value(text: str) -> float | str:
     try:
-        value = number_text(float(row["value"]))
+        return float(text)
     except ValueError:
-        value = row["value"]
-    return f"{value} {row['unit']}".strip()
+        return text
 
 
 def number_text(value: float) -> str:

@@ -11,13 +11,14 @@ import pytest
 
 from planning.plan import ViewpointArrays
 from planning.routing.sorties import SortieProblem, sortie_durations_s
+from tests.benchmarks import next_battery
 from tests.benchmarks.__main__ import main, run_all
 from tests.benchmarks.catalogue import BENCHMARKS
 from tests.benchmarks.fresh_process import run_command
 from tests.benchmarks.harness import Benchmark, Row, Skipped, machine
 from tests.benchmarks.mission_files import largest_errors
 from tests.benchmarks.plan_routing import nearest_sorties
-from tests.benchmarks.report import number_text
+from tests.benchmarks.report import number_text, recorded_rows
 from tests.benchmarks.speed_profiles import ring_flight
 
 
@@ -67,6 +68,42 @@ def test_measuring_a_part_anew_keeps_the_others(tmp_path: Path) -> None:
     assert "skipped" in first
     assert "skipped" not in second
     assert (tmp_path / "benchmarks" / "tiny.csv").read_text().count("\n") == 3
+
+
+def test_what_is_added_stands_beside_what_is_recorded_which_is_not_measured_again(tmp_path: Path) -> None:
+    told = []
+
+    def growing(context):
+        told.append(context.recorded)
+        yield from context.recorded
+        yield Row("site", f"seed {len(context.recorded)}", 1.5, "dB", None, "beside", "at least 1 dB", True, 2)
+        yield Row("site", f"word {len(context.recorded)}", "plenty")
+
+    benchmark = Benchmark("tiny", "Tiny", "About tiny.", growing)
+    run_all([benchmark], tmp_path, False, (benchmark,))
+    run_all([benchmark], tmp_path, False, (benchmark,), add=True)
+    assert [row.what for row in told[1]] == ["seed 0", "word 0"]
+    assert told[1][0] == Row("site", "seed 0", 1.5, "dB", None, "beside", "at least 1 dB", True, 2)
+    page = (tmp_path / "benchmarks.md").read_text()
+    assert all(f"| site | {what} |" in page for what in ("seed 0", "word 0", "seed 2", "word 2"))
+    for is_quick, add in ((False, False), (True, True)):  # anew, and other circumstances than those recorded
+        run_all([benchmark], tmp_path, is_quick, (benchmark,), add=add)
+        assert told[-1] == ()
+
+
+def test_seeds_of_the_next_battery_that_are_recorded_are_not_flown_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    def case_of(name, is_quick):
+        raise AssertionError(f"{name} is flown again")
+
+    monkeypatch.setattr(next_battery, "case_of", case_of)
+    recorded = recorded_rows("next-battery", Path("docs/benchmarks"), is_quick=False)
+    of_planar = [row for row in recorded if row.scene == "planar"]
+    assert list(next_battery.measure_scene("planar", recorded, is_quick=False)) == of_planar
+    n_of_first = next_battery.N_SEEDS["planar"]
+    monkeypatch.setitem(next_battery.N_SEEDS, "planar", n_of_first + 1)
+    rows = next_battery.measure_scene("planar", recorded, is_quick=False)
+    with pytest.raises(AssertionError, match="planar is flown again"):
+        list(rows)
 
 
 def test_a_real_benchmark_runs_quickly_end_to_end(tmp_path: Path) -> None:
