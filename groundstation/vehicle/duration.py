@@ -1,8 +1,8 @@
 """How long an autopilot takes for a mission's items: the plan's motion, and the waits that are in the items.
 
 Plans reckon with an aircraft that turns at the waypoint, as DJI's do. Both MAVLink autopilots turn nose and gimbal on
-the way, and what is left of the turn is in the hold. PX4 brakes more gently (`px4_motion`), but its hold counts from
-when the place is within the item's radius, before the aircraft rests or the nose points.
+the way, and what is left of the turn is in the hold. PX4 brakes more gently (`planning.motion.px4`), but its hold
+counts from when the place is within the item's radius, before the aircraft rests or the nose points.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from pymavlink.dialects.v20 import common as mavlink
 from groundstation.vehicle.setup import landing, leg_late_s
 from missions.mavlink.autopilots import Autopilot, facts
 from missions.mavlink.items import MissionItem
-from missions.mavlink.px4_motion import px4_leg_s, px4_turn_s
 from missions.mission.model import Mission
 from planning.geo.enu import enu_from_geodetic
 from planning.geo.frames import Vec3, wrap_heading_deg
+from planning.motion.px4 import px4_legs_s, px4_turn_s
 from planning.motion.timing import MotionLimits, leg_times_s, motion_limits
 from planning.plan import Plan
 
@@ -62,8 +62,8 @@ def items_duration_s(orders: TimedOrders, autopilot: Autopilot) -> float:
             there = _place(item, mission)
             item_s = float(leg_times_s(np.array([np.subtract(there, here)]), limits)[0]) + item.params[0]
             if autopilot is Autopilot.PX4 and item.command == mavlink.MAV_CMD_NAV_WAYPOINT:
-                x, y, z = (b - a for a, b in zip(here, there, strict=True))
-                item_s = px4_leg_s((x, y, z), limits, item.params[1]) + item.params[0]
+                leg = np.array([np.subtract(there, here)])
+                item_s = float(px4_legs_s(leg, limits, item.params[1])[0]) + item.params[0]
             if autopilot is Autopilot.PX4 and following is not None and following.viewpoint_id:
                 turn_deg = abs(wrap_heading_deg(headings[following.viewpoint_id] - nose_deg))
                 item_s = max(item_s, px4_turn_s(turn_deg, math.degrees(limits.yaw_rate_rad_s)))

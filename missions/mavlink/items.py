@@ -26,7 +26,6 @@ from dataclasses import dataclass
 from pymavlink.dialects.v20 import common as mavlink
 
 from missions.mavlink.autopilots import Autopilot, facts
-from missions.mavlink.px4_motion import px4_turn_s
 from missions.mission.build import SAME_POINT_M
 from missions.mission.export_choices import HeightReference
 from missions.mission.model import (
@@ -43,6 +42,7 @@ from planning.base.errors import MissionError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from planning.geo.frames import wrap_heading_deg
+from planning.motion.px4 import px4_turn_s
 from planning.parameters import CameraSettings
 from planning.plan import ANGLE_DECIMALS
 

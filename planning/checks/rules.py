@@ -429,7 +429,7 @@ def aircraft_apart(case: Case) -> Iterator[Finding]:
             gap_m = nearest_at_once_m(leg, one_s, another, other_s)
             if gap_m < nearest_m:
                 nearest_m, nearest = gap_m, say("sorties {} and {}", first, second)
-        elif one_s < other_s + other.duration_s and other_s < one_s + one.duration_s:
+        elif one_s < other_s + other.duration_s + another.longer_s and other_s < one_s + one.duration_s + leg.longer_s:
             text = say("sorties {} and {} need one aircraft at the same time; plan the flight again", first, second)
             yield Finding(Severity.ERROR, "at-once", text, say("sortie {}", second))
     if math.isinf(nearest_m):

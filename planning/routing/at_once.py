@@ -1,10 +1,13 @@
 """Sorties that are in the air at the same time, each with an aircraft of its own, and keep apart in space and time.
 
 While an aircraft is on a leg, it counts as being all along it, from its arrival at the leg's start until it leaves the
-leg's end. Two sorties keep apart if no two legs nearer than the distance asked for are flown at times that may
-coincide, wherever between `TIMING_S` and a share of the way the aircraft are early or late. So for each pair of sorties
-the differences of starts that are forbidden are intervals, and starts are found among their ends; that no two legs meet
-is exact, not sampled.
+leg's end. When that is depends on the autopilot, which a plan does not know: one that limits jerk takes half as long
+again for short legs. So a sortie has times at several paces, and the aircraft of one plan fly at the same pace or at
+any mixture of them, each of them besides up to `TIMING_S` and a share of its time early or late. Two sorties keep apart
+if no two legs nearer than the distance asked for are flown at times that may coincide at any mixture. The time between
+two legs is linear in the mixture's weights, so for each pair of sorties the differences of starts that are forbidden
+are intervals whose ends belong to single paces, and starts are found among their ends; that no two legs meet is exact,
+not sampled.
 """
 
 from __future__ import annotations
@@ -17,10 +20,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.aircraft.catalogue import profile
 from planning.base.jit import kernel
 from planning.base.progress import Stop, TimeLimit, any_of, never
 from planning.geo.bvh import segment_segment_d2
-from planning.motion.timing import FlightPath, flight_path, motion_limits, sortie_flight_path, stopping_times_s
+from planning.motion.px4 import px4_legs_s
+from planning.motion.timing import (
+    FlightPath,
+    MotionLimits,
+    flight_path,
+    motion_limits,
+    photo_stop_s,
+    sortie_flight_path,
+    stopping_times_s,
+)
 from planning.parameters import FlightRules
 from planning.plan import Aircraft, Plan, Sortie, ViewpointArrays
 from planning.routing.flights import Flight, FlightTimes, draw_flights, reversed_flight
@@ -29,8 +42,15 @@ from planning.routing.sorties import plan_sorties
 Array = NDArray[np.float64]
 
 TIMING_S, TIMING_SHARE = 15.0, 0.05
-"""How early or late an aircraft may be: so much in any case (a pilot's hand on the button), and a share of the time
-since its start."""
+"""How early or late an aircraft may be beside its pace: so much in any case (a pilot's hand on the button), and a share
+of the time since its start. Photos of both autopilots in simulation stay within two thirds of it."""
+
+ARDUPILOT_LATE_S, ARDUPILOT_PHOTO_S, PX4_PHOTO_S, PASS_S = 0.7, 3.0, 2.0, 1.0
+"""What an autopilot takes longer for a leg than the fastest way, its shortest stops for a photo, and that of both at a
+vertex without one (`missions.mavlink.items`)."""
+
+PX4_RADIUS_M = 0.5
+"""Within which PX4's waypoints count as reached, as missions are written."""
 
 CHANGE_S = 120.0
 """Between a landing and the next take-off of the same aircraft: time for the battery."""
@@ -54,7 +74,7 @@ class LegTimes:
     starts_enu_m, ends_enu_m
         Shape (k, 3).
     from_s, until_s
-        Since the motors were switched on, as planned, shape (k,).
+        Since the motors were switched on, at each pace, shape (p, k); the first pace is as planned.
     """
 
     starts_enu_m: Array
@@ -64,13 +84,18 @@ class LegTimes:
 
     @property
     def earliest_s(self) -> Array:
-        """When the aircraft is there at the earliest, shape (k,)."""
+        """When the aircraft is there at the earliest, shape (p, k)."""
         return np.asarray(self.from_s - TIMING_S - TIMING_SHARE * self.from_s)
 
     @property
     def latest_s(self) -> Array:
-        """When it has left at the latest, shape (k,)."""
+        """When it has left at the latest, shape (p, k)."""
         return np.asarray(self.until_s + TIMING_S + TIMING_SHARE * self.until_s)
+
+    @property
+    def longer_s(self) -> float:
+        """How much longer than planned the sortie takes at the slowest pace."""
+        return float((self.until_s[:, -1] - self.until_s[0, -1]).max())
 
 
 def leg_times(path: FlightPath, aircraft: Aircraft, rules: FlightRules) -> LegTimes:
@@ -82,12 +107,37 @@ def leg_times(path: FlightPath, aircraft: Aircraft, rules: FlightRules) -> LegTi
         The aircraft cannot fly in the expected wind.
     """
     path = path.without_passed()
-    arrival_s = stopping_times_s(path, motion_limits(aircraft, rules))
+    arrival_s, hover_s = _paces(path, aircraft, rules)
     # Take-off and landing, together as long as the rules say, may each take all of it.
     ground_s = rules.takeoff_landing_s
-    from_s, until_s = arrival_s[:-1] + ground_s, arrival_s[1:] + path.hover_s[1:] + ground_s
-    from_s[0], until_s[-1] = 0.0, until_s[-1] + ground_s
+    from_s, until_s = arrival_s[:, :-1] + ground_s, arrival_s[:, 1:] + hover_s[:, 1:] + ground_s
+    from_s[:, 0], until_s[:, -1] = 0.0, until_s[:, -1] + ground_s
     return LegTimes(path.vertices_enu_m[:-1], path.vertices_enu_m[1:], from_s, until_s)
+
+
+def _paces(path: FlightPath, aircraft: Aircraft, rules: FlightRules) -> tuple[Array, Array]:
+    """Arrival at every vertex and time at rest there, each shape (p, k): as planned, without turning, ArduPilot, PX4.
+
+    Both autopilots turn on the way as far as they can, each by its own rule: with the pace that needs no time for turns
+    mixtures have any part of them.
+    """
+    limits, photo_s = motion_limits(aircraft, rules), photo_stop_s(aircraft, rules)
+    is_photo, n_legs = path.hover_s > 0.0, len(path.turn_s)
+    plain = replace(path, hover_s=np.minimum(path.hover_s, photo_s), turn_s=np.zeros(n_legs))
+
+    def jerky(autopilot: str) -> MotionLimits:
+        own = profile(autopilot).aircraft.max_jerk_m_s3
+        return limits if aircraft.max_jerk_m_s3 or own is None else replace(limits, jerk_m_s3=own)
+
+    stops_s = np.where(is_photo, np.maximum(path.hover_s, ARDUPILOT_PHOTO_S), PASS_S) + ARDUPILOT_LATE_S
+    smooth = replace(path, hover_s=np.where(path.is_stop, stops_s, 0.0))
+    px4_s = np.where(is_photo, np.maximum(path.hover_s, PX4_PHOTO_S), PASS_S)
+    legs_s = np.maximum(px4_legs_s(path.deltas_enu_m, jerky("px4"), PX4_RADIUS_M), path.turn_s)
+    hover_s = np.stack([path.hover_s, plain.hover_s, smooth.hover_s, px4_s])
+    arrival_s = [stopping_times_s(path, limits), stopping_times_s(plain, limits)]
+    arrival_s += [stopping_times_s(smooth, jerky("ardupilot"))]
+    arrival_s += [np.concatenate([[0.0], np.cumsum(px4_s[:-1] + legs_s)])]
+    return np.stack(arrival_s), hover_s
 
 
 def sortie_leg_times(plan: Plan, sortie: Sortie) -> LegTimes | None:
@@ -106,7 +156,7 @@ def _distances_m(a: Array, b: Array, c: Array, d: Array, found: Array) -> None:
 
 def leg_distances_m(one: LegTimes, other: LegTimes) -> Array:
     """Distance of each leg of one sortie to each of another, shape (k, l), exact."""
-    found = np.empty((len(one.from_s), len(other.from_s)))
+    found = np.empty((len(one.starts_enu_m), len(other.starts_enu_m)))
     a, b, c, d = (
         np.ascontiguousarray(ends, np.float64)
         for ends in (one.starts_enu_m, one.ends_enu_m, other.starts_enu_m, other.ends_enu_m)
@@ -126,8 +176,8 @@ def forbidden_s(is_near: NDArray[np.bool_], one: LegTimes, other: LegTimes) -> A
         Whether legs of one are nearer to legs of the other than they may be, shape (k, l).
     """
     i, j = np.nonzero(is_near)
-    low = one.earliest_s[i] - other.latest_s[j]
-    high = one.latest_s[i] - other.earliest_s[j]
+    low = (one.earliest_s[:, i] - other.latest_s[:, j]).min(axis=0)
+    high = (one.latest_s[:, i] - other.earliest_s[:, j]).max(axis=0)
     merged: list[list[float]] = []
     for first, last in sorted(zip(low.tolist(), high.tolist(), strict=True)):
         if merged and first < merged[-1][1]:
@@ -203,7 +253,7 @@ def _in_order(
             ways.append((start_s + sorties[sortie].durations_s[way], way, start_s))
         landed, way, start_s = min(ways)
         found[sortie] = Start(start_s, own + 1, bool(way))
-        ready_s[own] = float(math.ceil(landed + CHANGE_S))
+        ready_s[own] = float(math.ceil(landed + sorties[sortie].legs[way].longer_s + CHANGE_S))
     return tuple(found[k] for k in range(len(order)))
 
 
@@ -328,12 +378,13 @@ def flown_at_once(plan: Plan) -> Plan:
 
 def nearest_at_once_m(first: LegTimes, first_s: float, second: LegTimes, second_s: float) -> float:
     """Smallest distance of legs of two sorties that may be flown at the same time; inf where none may."""
-    meets = (first_s + first.earliest_s)[:, None] < second_s + second.latest_s
-    meets &= (first_s + first.latest_s)[:, None] > second_s + second.earliest_s
+    low = (first.earliest_s[:, :, None] - second.latest_s[:, None, :]).min(axis=0)
+    high = (first.latest_s[:, :, None] - second.earliest_s[:, None, :]).max(axis=0)
+    meets = (low < second_s - first_s) & (second_s - first_s < high)
     return float(np.where(meets, leg_distances_m(first, second), np.inf).min())
 
 
 def compile_kernels() -> None:
     """Compile what this module runs."""
-    leg = LegTimes(np.zeros((1, 3)), np.ones((1, 3)), np.zeros(1), np.ones(1))
+    leg = LegTimes(np.zeros((1, 3)), np.ones((1, 3)), np.zeros((1, 1)), np.ones((1, 1)))
     leg_distances_m(leg, leg)

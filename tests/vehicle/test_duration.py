@@ -7,14 +7,17 @@ import numpy as np
 import pytest
 
 from groundstation.services.fly.flying import FlightRequest, fly_plan
-from groundstation.vehicle.duration import timed_by_items
+from groundstation.vehicle.duration import items_duration_s, timed_by_items
+from groundstation.vehicle.orders import sortie_orders
 from groundstation.vehicle.setup import leg_late_s
 from missions.mavlink.autopilots import Autopilot
+from missions.mission.build import missions_from_plan
 from planning.aircraft.catalogue import profile
 from planning.motion.timing import leg_times_s, motion_limits
 from planning.parameters import FlightRules
 from planning.planner import plan_flight
 from planning.request import PlanRequest
+from planning.routing.at_once import TIMING_S, TIMING_SHARE, sortie_leg_times
 from planning.site.bundled import single_panel
 from tests.planning.revision.cases import QUICK
 from tests.slow import slow
@@ -63,3 +66,22 @@ def test_a_plan_timed_by_its_items_keeps_its_other_sorties():
     assert timed.sorties[0] == plan.sorties[0]
     assert timed.sorties[1].duration_s == 100.0 + plan.rules.takeoff_landing_s
     assert replace(timed, sorties=twice.sorties) == twice
+
+
+@pytest.mark.parametrize("profile_id", ["m3e", "ardupilot", "px4"])
+def test_paces_of_aircraft_that_fly_at_once_span_what_both_autopilots_take(profile_id):
+    site_model = single_panel()
+    for settle_s in (0.0, 2.0):
+        rules = FlightRules(settle_s=settle_s)
+        request = PlanRequest(n_views=12, greedy=QUICK, profile_id=profile_id, rules=rules)
+        plan = plan_flight(site_model, request).plan
+        missions = missions_from_plan(plan, site_model.site.origin, site_model.site.home_enu_m)
+        (orders,) = (sortie_orders(plan, site_model, mission) for mission in missions)
+        legs = sortie_leg_times(plan, plan.sorties[0])
+        at_paces_s = legs.until_s[:, -1] - rules.takeoff_landing_s  # from lift-off
+        taken_s = np.array([items_duration_s(orders, autopilot) for autopilot in Autopilot])
+        slack_s = 0.5 * (TIMING_S + TIMING_SHARE * taken_s)
+        assert (at_paces_s.min() - slack_s <= taken_s).all()
+        assert (taken_s <= at_paces_s.max() + slack_s).all()
+        if settle_s == 0.0 and profile_id != "px4":
+            assert taken_s.max() > at_paces_s[0] + 2.0 * slack_s.max(), "as planned alone would not do"

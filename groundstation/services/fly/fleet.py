@@ -309,7 +309,9 @@ class Fleet:
         if number not in self._legs:
             self._legs[number] = sortie_leg_times(self.plan, self.plan.sorties[number - 1])
         legs = self._legs[number]
-        return None if legs is None else replace(legs, from_s=slower * legs.from_s, until_s=slower * legs.until_s)
+        if legs is None:
+            return None
+        return replace(legs, from_s=slower * legs.from_s[:1], until_s=slower * legs.until_s[:1])  # its pace is known
 
     def _nearest(self) -> Iterator[Finding]:
         found = self.traffic.least_m()

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from pymavlink.dialects.v20 import common as mavlink
 
-from missions.mavlink.px4_motion import px4_leg_s
 from missions.simulator.autopilot.guidance import DEG
 from missions.simulator.autopilot.mission_store import StoredItem
 from missions.simulator.autopilot.profiles import VehicleProfile
@@ -26,6 +26,7 @@ from missions.simulator.autopilot.scheduler import (
 )
 from missions.simulator.autopilot.steps import Reach, Stay, Step, StepRunner, Wait
 from planning.geo.frames import Vec3
+from planning.motion.px4 import px4_legs_s
 from planning.motion.timing import MotionLimits
 
 SHORT_LEG_M = 0.5
@@ -183,8 +184,7 @@ class Px4Scheduler(Scheduler):
             guidance.yaw_rate_rad_s,
             values["MPC_JERK_AUTO"],
         )
-        x, y, z = (b - a for a, b in zip(guidance.here_enu_m, goal_enu_m, strict=True))
-        return px4_leg_s((x, y, z), limits, radius_m)
+        return float(px4_legs_s(np.array([np.subtract(goal_enu_m, guidance.here_enu_m)]), limits, radius_m)[0])
 
     def _heading(self, item: StoredItem, goal_enu_m: Vec3) -> float | None:
         """Heading on the leg: the item's own, else the course; None leaves it, as looking at a place does."""

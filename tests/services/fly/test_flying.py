@@ -4,7 +4,9 @@ import math
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
+from scipy.optimize import linprog
 
 from groundstation.services.fly.flying import FlightRequest, check_site, fly_files, fly_plan
 from groundstation.vehicle.sortie.run_records import Phase
@@ -24,10 +26,12 @@ from planning.base.errors import (
     OperationCancelled,
 )
 from planning.base.findings import Severity
+from planning.motion.timing import sortie_flight_path
 from planning.parameters import FlightRules
 from planning.plan import read_plan, write_plan
 from planning.planner import plan_flight
 from planning.request import PlanRequest
+from planning.routing.at_once import TIMING_S, TIMING_SHARE, sortie_leg_times
 from planning.site.bundled import court, office, single_panel, write_scene
 from planning.site.file import read_site
 from tests.planning.revision.cases import QUICK
@@ -107,19 +111,52 @@ def test_the_whole_office_is_flown_as_planned_in_several_sorties(model, autopilo
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("wind_m_s", [0.0, 6.0])
-def test_two_aircraft_in_the_air_at_once_keep_apart_as_they_are_flown(wind_m_s):
+@pytest.mark.parametrize(
+    ("autopilot", "profile", "wind_m_s"),
+    [
+        (Autopilot.ARDUPILOT, "m3e", 0.0),
+        slow(Autopilot.ARDUPILOT, "m3e", 6.0),
+        (Autopilot.PX4, "m3e", 0.0),
+        slow(Autopilot.PX4, "px4", 0.0),
+    ],
+)
+def test_two_aircraft_in_the_air_at_once_keep_apart_and_to_the_times_that_planning_allows(autopilot, profile, wind_m_s):
     site = court()
     rules = FlightRules(at_once=2, apart_m=12.0, wind_m_s=wind_m_s)
-    plan = plan_flight(site, PlanRequest(n_views=60, rules=rules, time_budget_s=10.0)).plan
+    request = PlanRequest(n_views=60, rules=rules, profile_id=profile, time_budget_s=10.0)
+    plan = plan_flight(site, request).plan
     assert {sortie.aircraft for sortie in plan.sorties} == {1, 2}
-    flight = fly_plan(plan, site, FlightRequest(conditions=Conditions(wind_m_s=wind_m_s))).flight
+    flight = fly_plan(plan, site, FlightRequest(autopilot=autopilot, conditions=Conditions(wind_m_s=wind_m_s))).flight
     (found,) = (finding for finding in flight.report.findings if finding.code == "aircraft-apart")
     assert found.severity is Severity.OK
     assert 12.0 <= found.value < 60.0
     wider = replace(plan, rules=replace(rules, apart_m=found.value + 0.1))
     (short,) = (f for f in report_flight(wider, site, flight.sorties).findings if f.code == "aircraft-apart")
     assert (short.severity, short.value) == (Severity.ERROR, found.value)
+    for late in plan.sorties:  # one as early as it may be, the other as late
+        sorties = tuple(replace(s, start_s=s.start_s + 2.0 * TIMING_S * (s is late)) for s in plan.sorties)
+        report = report_flight(replace(plan, sorties=sorties), site, flight.sorties)
+        assert all(found.severity is Severity.OK for found in report.findings if found.code == "aircraft-apart")
+    assert most_astray(plan, flight) < 0.67
+    if profile == "m3e":
+        assert most_astray(plan, flight, n_paces=1) > 1.5, "with the planned times alone nothing would hold"
+
+
+def most_astray(plan, flight, n_paces=None):
+    """How far photos are from their planned times at the best mixture of paces, in parts of what planning allows."""
+    taken_s, at_paces_s = [], []
+    for record, sortie in zip(flight.sorties, plan.sorties, strict=True):
+        _, vertices = sortie_flight_path(sortie, {v.id: v for v in plan.viewpoints}, plan.aircraft, plan.rules)
+        left_s = sortie_leg_times(plan, sortie).until_s[:n_paces, vertices - 1]
+        at_paces_s.append(left_s - plan.rules.takeoff_landing_s - plan.rules.photo_s)
+        taken_s += [photo.time_s for photo in record.photos]
+    paces, taken = np.concatenate(at_paces_s, axis=1), np.array(taken_s)
+    n, slack = len(paces), TIMING_S + TIMING_SHARE * taken
+    above = np.vstack([np.column_stack([paces.T, -slack]), np.column_stack([-paces.T, -slack])])
+    best = linprog(
+        np.eye(n + 1)[n], above, np.concatenate([taken, -taken]), np.array([[1.0] * n + [0.0]]), [1.0], (0.0, None)
+    )
+    return best.x[n]
 
 
 @pytest.mark.slow

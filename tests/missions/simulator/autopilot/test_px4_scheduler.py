@@ -7,7 +7,7 @@ import math
 import pytest
 
 from missions.mavlink.messages import CameraImageCaptured, MissionItemReached
-from missions.mavlink.px4_motion import straight_s
+from planning.motion.px4 import straight_s
 from tests.missions.simulator.ground import PX4, Ground, at, item
 
 TAKEOFF, LAND = at(22, 0, 0, 20, 0, 0, 0, math.nan), at(21, 0, 0, 0, 0, 0, 0, math.nan)
