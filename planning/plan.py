@@ -271,7 +271,9 @@ class FlightWorth:
         """For people, in one line."""
         each = joined("; ", (battery.text for battery in self.batteries))
         expected = say("{} (± {:.1f} dB)", each, self.deviation_db)
-        return say("{}; another battery would bring {:.1f} dB more", expected, max(0.0, self.gain_db))
+        gain_db = max(0.0, self.gain_db)
+        less = 100.0 * (1.0 - 10.0 ** (-gain_db / 20.0))
+        return say("{}; another battery would bring {:.1f} dB more, {:.0f} % less error", expected, gain_db, less)
 
 
 @dataclass(frozen=True, slots=True)

@@ -218,7 +218,7 @@ def print_summary(planned: Planned, out: Path, seconds: float) -> None:
         share,
     )
     if plan.worth is not None:
-        tell("unseen views of a model of its photos, expected: {}", plan.worth.text)
+        tell("pictures of a model of its photos from new places, expected PSNR: {}", plan.worth.text)
     if planned.most_psnr_db is not None:
         tell(
             "no choice as large from the viewpoints compared is expected to bring more than {:.1f} dB",
