@@ -97,6 +97,31 @@ def absolute_height_m(photo: PhotoMetadata) -> float | None:
     return photo.height_ellipsoid_m if photo.height_ellipsoid_m is not None else photo.altitude_amsl_m
 
 
+def receiver_heights_m(photos: Sequence[PhotoMetadata]) -> Floats:
+    """Heights that receivers measured, above the ellipsoid, shape (n,); NaN where a photo has none.
+
+    Parameters
+    ----------
+    photos
+        All with a position.
+    """
+    from planning.geo.geoid import ellipsoid_from_amsl_m
+
+    lat, lon, ellipsoid, amsl = _columns(photos, "lat_deg", "lon_deg", "height_ellipsoid_m", "altitude_amsl_m")
+    return np.where(np.isfinite(ellipsoid), ellipsoid, ellipsoid_from_amsl_m(lat, lon, amsl))
+
+
+def takeoff_height_m(photos: Sequence[PhotoMetadata]) -> float | None:
+    """Height of take-off above the ellipsoid, the median of what photos say that have both kinds of height.
+
+    None where none has both.
+    """
+    (above,) = _columns(photos, "height_above_takeoff_m")
+    takeoff_m = receiver_heights_m(photos) - above
+    is_known = np.isfinite(takeoff_m)
+    return float(np.median(takeoff_m[is_known])) if is_known.any() else None
+
+
 def photo_places(photos: Sequence[PhotoMetadata], site: Locality, heights: PhotoHeights, label: str) -> PhotoPlaces:
     """Places of photos, one way of counting heights for all.
 
@@ -113,14 +138,11 @@ def photo_places(photos: Sequence[PhotoMetadata], site: Locality, heights: Photo
         No photo says its height in the way asked for.
     """
     from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
-    from planning.geo.geoid import ellipsoid_from_amsl_m
 
     findings = []
-    lat, lon, ellipsoid, amsl, above = _columns(
-        photos, "lat_deg", "lon_deg", "height_ellipsoid_m", "altitude_amsl_m", "height_above_takeoff_m"
-    )
+    lat, lon, above = _columns(photos, "lat_deg", "lon_deg", "height_above_takeoff_m")
     home_m = float(geodetic_from_enu(site.origin, [site.home_enu_m]).ellipsoid_height_m[0])
-    absolute_m = np.where(np.isfinite(ellipsoid), ellipsoid, ellipsoid_from_amsl_m(lat, lon, amsl))
+    absolute_m = receiver_heights_m(photos)
     takeoff_m = home_m + above
     n_fixed = sum(photo.is_rtk_fixed for photo in photos)
     chosen, reason = _choice(heights, absolute_m, takeoff_m, n_fixed)

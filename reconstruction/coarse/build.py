@@ -31,7 +31,13 @@ from planning.base.progress import QUIET, Monitor
 from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
 from planning.geo.frames import Origin, Vec3
 from planning.photos.jpeg import PHOTO_FILE
-from planning.photos.places import PhotoHeights, absolute_height_m, photo_places
+from planning.photos.places import (
+    PhotoHeights,
+    absolute_height_m,
+    photo_places,
+    receiver_heights_m,
+    takeoff_height_m,
+)
 from planning.photos.record import PhotoMetadata
 from planning.site.records import MAX_DISTANCE_M
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
@@ -52,7 +58,7 @@ from reconstruction.coarse.cloud import (
 from reconstruction.coarse.ground_level import PICTURE_PX, level_of_ground
 from reconstruction.coarse.marks import agreeing_marks, factor_of_marks, is_in, meeting_place, scaled_marks
 from reconstruction.coarse.pairs import PairHint, PairParameters, choose_pairs, likeness_of
-from reconstruction.coarse.placing import NO_CONTROL, Above, Control, Measured, Placed, place_model
+from reconstruction.coarse.placing import NO_CONTROL, Above, Control, Measured, Placed, about_height, place_model
 from reconstruction.coarse.plane_sweep import PICTURE_PX as SWEPT_PX
 from reconstruction.coarse.plane_sweep import DenseDepth, joined, swept
 from reconstruction.coarse.walls import BuildingParameters, Ground, find_ground
@@ -270,6 +276,7 @@ def build_coarse(
     known = taken.origin is not None or stated.origin is not None or bool(stated.control)
     findings = (*taken.findings, *lately, *placed.findings, *_left_out(left_out, len(taken.names)))
     findings += (*_about_ground(buildings), *_about_walls(buildings, forwards), *_about_place(known))
+    findings += about_height(origin) if _says_height(taken.metadata) else ()
     n = len(taken.names)
     return CoarseModel(
         posed,
@@ -330,7 +337,7 @@ class _Clock:
 
 @dataclass(frozen=True, slots=True)
 class _Provisional:
-    """The frame until there is a site: its zero in the middle of the photos."""
+    """The frame until there is a site: its zero in the middle of the photos, at the height of take-off."""
 
     name: str
     origin: Origin
@@ -408,8 +415,7 @@ def _measured(
         return origin, tuple(Measured() for _ in photos), ()
     lat = float(np.median([photo.lat_deg for photo in placed if photo.lat_deg is not None]))
     lon = float(np.median([photo.lon_deg for photo in placed if photo.lon_deg is not None]))
-    heights = [height for photo in placed if (height := absolute_height_m(photo)) is not None]
-    place = _Provisional(label, Origin(lat, lon, float(np.clip(np.median(heights or [0.0]), -900.0, 9000.0))))
+    place = _Provisional(label, Origin(lat, lon, float(np.clip(_zero_m(placed), -900.0, 9000.0))))
     near, findings = _near_each_other(placed, place)
     where = photo_places(near, place, stated.heights, label)
     n_turned = sum(_is_turned(photo) for photo in near)
@@ -423,6 +429,20 @@ def _measured(
         found[photo.path] = Measured(pose.position_enu_m, pose.covariance[:3, :3], turn, information)
     notes = tuple(finding for finding in where.findings if finding.code != "height-disagreement")
     return place.origin, tuple(found.get(photo.path, Measured()) for photo in photos), (*findings, *notes)
+
+
+def _says_height(photos: Sequence[PhotoMetadata]) -> bool:
+    return any(photo.lat_deg is not None and absolute_height_m(photo) is not None for photo in photos)
+
+
+def _zero_m(photos: Sequence[PhotoMetadata]) -> float:
+    """Height of the provisional frame above the ellipsoid: take-off, so that both kinds of height give one place."""
+    takeoff_m = takeoff_height_m(photos)
+    if takeoff_m is not None:
+        return takeoff_m
+    heights_m = receiver_heights_m(photos)
+    is_known = np.isfinite(heights_m)
+    return float(np.median(heights_m[is_known])) if is_known.any() else 0.0
 
 
 def _near_each_other(photos: list[PhotoMetadata], place: _Provisional) -> tuple[list[PhotoMetadata], list[Finding]]:

@@ -21,6 +21,8 @@ from scipy.spatial.transform import Rotation
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
+from planning.geo.frames import Origin
+from planning.geo.geoid import amsl_from_ellipsoid_m
 from reconstruction.coarse.cloud import Up, turn_upright
 from reconstruction.colmap.georeference import MAD_TO_SIGMA, Similarity, are_on_a_line, fit_robustly
 
@@ -479,3 +481,27 @@ def _findings(
         text = say("the positions of {} of {} photos contradict the model", n_out, int(has_place.sum()))
         found.append(Finding(Severity.WARNING, "positions-contradict", text, "", float(n_out), 0.0, "photos"))
     return tuple(found)
+
+
+LOWEST_GROUND_M = -15.0
+"""Above sea level: only the shores of some salt lakes are lower. Elsewhere the heights of receivers are off."""
+
+
+def about_height(origin: Origin) -> tuple[Finding, ...]:
+    """Whether receivers put the ground where none is: some aircraft write heights that are off by tens of metres.
+
+    Parameters
+    ----------
+    origin
+        On the ground.
+    """
+    amsl_m = float(amsl_from_ellipsoid_m(origin.lat_deg, origin.lon_deg, origin.ellipsoid_height_m))
+    if amsl_m >= LOWEST_GROUND_M:
+        return ()
+    text = say(
+        "by the heights in the photos the ground is {:.0f} m below sea level: unless it is, they are off by that, and "
+        "the height of the site with them; its sizes are not. Survey control points before missions with absolute "
+        "heights",
+        -amsl_m,
+    )
+    return (Finding(Severity.WARNING, "ground-below-sea", text, "", amsl_m, LOWEST_GROUND_M, "m"),)

@@ -9,9 +9,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from planning.base.errors import InputError
+from planning.geo.frames import Origin
+from planning.geo.geoid import ellipsoid_from_amsl_m
 from reconstruction.base.cameras import cam_from_enu
 from reconstruction.coarse.cloud import FoundPlane, Up, turn_upright, up_of_cameras, up_of_planes
-from reconstruction.coarse.placing import Above, Control, Measured, place_model
+from reconstruction.coarse.placing import Above, Control, Measured, about_height, place_model
 from reconstruction.colmap.georeference import Similarity
 
 TRUTH = Similarity(3.7, Rotation.from_euler("zyx", [0.7, 0.4, -1.1]).as_matrix(), np.array([12.0, -5.0, 30.0]))
@@ -224,3 +226,12 @@ def test_cameras_that_swing_below_a_kite_leave_up_to_the_ground():
     ground = FoundPlane(np.array([0.0, 0.0, 1.0]), 0.0, np.arange(500), 1e-3)
     up = up_of_planes(start, [ground] * 4)
     assert math.degrees(math.acos(float(up.direction[2]))) < 3.0
+
+
+@pytest.mark.parametrize(("ground_amsl_m", "codes"), [(-6.0, []), (300.0, []), (-56.0, ["ground-below-sea"])])
+def test_receivers_that_put_the_ground_below_the_sea_are_told(ground_amsl_m, codes):
+    """As DJI's FC300S wrote heights over Florida, which are some 60 m too low."""
+    origin = Origin(28.04, -82.70, float(ellipsoid_from_amsl_m(28.04, -82.70, ground_amsl_m)))
+    findings = about_height(origin)
+    assert [finding.code for finding in findings] == codes
+    assert all("56 m below sea level" in str(finding.message) for finding in findings)

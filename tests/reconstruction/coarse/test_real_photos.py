@@ -1,4 +1,4 @@
-"""The photos of Lund, without any metadata, to a coarse model: poses against the reference, and going on."""
+"""The photos of Lund to a coarse model: poses against the reference, going on, and heights that aircraft state."""
 
 from __future__ import annotations
 
@@ -10,10 +10,15 @@ import pytest
 
 from groundstation.services.photos.coarse import coarse_files, photos_of
 from planning.base.errors import InputError, OperationCancelled
+from planning.geo.enu import geodetic_from_enu
+from planning.geo.frames import Origin
+from planning.geo.geoid import ellipsoid_from_amsl_m
 from planning.site.file import read_site
+from reconstruction.coarse.cloud import turn_upright
 from reconstruction.coarse.parameters import CoarseRequest
 from reconstruction.colmap.folder import read_frame, read_model
 from reconstruction.colmap.georeference import angle_between_deg, fit
+from tests.planning.photos.photo_writer import exif_part, gps_tags, jpeg, packet, save
 
 
 @pytest.fixture
@@ -84,3 +89,35 @@ def test_too_few_photos_are_refused_in_one_line(door, tmp_path):
         path.unlink()
     with pytest.raises(InputError, match="at least 3 photos, got 2"):
         coarse_files(CoarseRequest(photos, tmp_path / "out"))
+
+
+TAKEN_OFF_AMSL_M, FLOWN_M, APART_M = 520.0, 30.0, 8.0
+
+
+def write_as_flown(photos, reference, folder):
+    """The photos as of an aircraft without RTK: positions, altitudes and heights above take-off; where each was."""
+    images = {image.name: image for image in read_model(reference).images.values()}
+    centres = np.array([image.centre_world for image in images.values()])
+    turn = turn_upright(-np.mean([image.cam_from_world[1] for image in images.values()], axis=0))
+    upright = (centres - centres.mean(axis=0)) @ turn.T
+    places = upright * APART_M / upright.std(axis=0).max() + (0.0, 0.0, FLOWN_M)
+    origin = Origin(48.0, 11.0, float(ellipsoid_from_amsl_m(48.0, 11.0, TAKEN_OFF_AMSL_M)))
+    lat, lon, _ = geodetic_from_enu(origin, places)
+    for name, place, *at in zip(images, places, lat.tolist(), lon.tolist(), strict=True):
+        exif = exif_part({0x010F: "DJI", 0x0110: "FC300S"}, {}, gps_tags(*at, TAKEN_OFF_AMSL_M + place[2]))
+        xmp = packet({"RelativeAltitude": f"{place[2]:+.2f}"})
+        save(folder / name, jpeg(exif, xmp, base=(photos / name).read_bytes()))
+    return dict(zip(images, geodetic_from_enu(origin, places).ellipsoid_height_m, strict=True))
+
+
+@pytest.mark.slow
+def test_a_flight_without_rtk_lies_as_high_as_its_photos_say(door, tmp_path):
+    photos, reference = door
+    truth = write_as_flown(photos, reference, tmp_path / "flown")
+    coarse_files(CoarseRequest(tmp_path / "flown", tmp_path / "out", size_px=600))
+    images = read_model(tmp_path / "out" / "sparse" / "0").images.values()
+    origin = read_site(tmp_path / "out" / "site.json").site.origin
+    heights = geodetic_from_enu(origin, np.array([image.centre_world for image in images])).ellipsoid_height_m
+    off_m = heights - [truth[image.name] for image in images]
+    assert len(off_m) >= 10
+    assert np.abs(off_m).max() < 1.0
