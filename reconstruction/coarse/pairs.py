@@ -29,7 +29,7 @@ N_LEARNED = 40_000
 """Features that the vocabulary is learned from."""
 
 N_OF_PHOTO = 2000
-"""Features of a photo that its signature is made of; COLMAP lists large ones first."""
+"""Features of a photo that its signature is made of: the last, since COLMAP lists fine ones first."""
 
 N_ROUNDS = 8
 """Of k-means; the words need not be the best, only the same for all photos."""
@@ -140,7 +140,7 @@ def likeness_of(descriptors: Mapping[str, NDArray[np.uint8]], names: Sequence[st
     descriptors
         Of the features of each photo, shape (k, 128), by name.
     """
-    chosen = [descriptors.get(name, np.zeros((0, 128), np.uint8))[:N_OF_PHOTO].astype(np.float32) for name in names]
+    chosen = [descriptors.get(name, np.zeros((0, 128), np.uint8))[-N_OF_PHOTO:].astype(np.float32) for name in names]
     together = np.concatenate(chosen) if chosen else np.zeros((0, 128), np.float32)
     if len(together) < N_WORDS:
         return np.zeros((len(names), len(names)))

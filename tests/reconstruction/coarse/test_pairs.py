@@ -62,3 +62,13 @@ def test_photos_of_one_place_are_alike_by_their_features():
         best = np.argsort(-likeness[row])[:2]
         assert {names[k][0] for k in best} == {name[0]}
     assert likeness[-1, :-1] == pytest.approx(0.0)
+
+
+def test_likeness_is_that_of_the_last_features_which_are_the_largest():
+    """COLMAP lists fine ones first, and grass is the same everywhere."""
+    rng = np.random.default_rng(0)
+    fine, large = rng.integers(0, 255, (2, 2, 2000, 128)).astype(np.uint8)
+    descriptors = {f"{i}{j}": np.concatenate([fine[i], large[j]]) for i in range(2) for j in range(2)}
+    likeness = likeness_of(descriptors, ["00", "01", "10", "11"])
+    assert likeness[0, 2] > 0.99
+    assert likeness[0, 1] < 0.9

@@ -103,7 +103,7 @@ def write_as_flown(photos, reference, folder):
     places = upright * APART_M / upright.std(axis=0).max() + (0.0, 0.0, FLOWN_M)
     origin = Origin(48.0, 11.0, float(ellipsoid_from_amsl_m(48.0, 11.0, TAKEN_OFF_AMSL_M)))
     lat, lon, _ = geodetic_from_enu(origin, places)
-    for name, place, *at in zip(images, places, lat.tolist(), lon.tolist(), strict=True):
+    for name, place, *at in zip(images, places.tolist(), lat.tolist(), lon.tolist(), strict=True):
         exif = exif_part({0x010F: "DJI", 0x0110: "FC300S"}, {}, gps_tags(*at, TAKEN_OFF_AMSL_M + place[2]))
         xmp = packet({"RelativeAltitude": f"{place[2]:+.2f}"})
         save(folder / name, jpeg(exif, xmp, base=(photos / name).read_bytes()))

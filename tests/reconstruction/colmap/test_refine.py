@@ -16,7 +16,7 @@ from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.colmap import refine
 from reconstruction.colmap.folder import read_model
 from reconstruction.colmap.georeference import Similarity, angle_between_deg, georeference, posed_photos
-from reconstruction.colmap.pycolmap_run import ColmapRun
+from reconstruction.colmap.pycolmap_run import ColmapRun, keep_largest
 from reconstruction.colmap.refine import RefineParameters, _covariances, refine_poses
 from tests.reconstruction.colmap.models import covariance, model, photos, turned
 
@@ -43,6 +43,32 @@ def start(folder: Path, n: int) -> tuple[list[PosedPhoto], list[PosedPhoto]]:
 def folder(shared_data):
     pytest.importorskip("pycolmap", reason="pycolmap is not installed (pip install .[colmap])")
     return shared_data / "multiview" / "lund_door"
+
+
+@pytest.mark.parametrize("n_columns", [4, 6])
+def test_the_largest_features_are_kept_in_their_order(tmp_path, n_columns):
+    colmap = pytest.importorskip("pycolmap", reason="pycolmap is not installed (pip install .[colmap])")
+    rng = np.random.default_rng(0)
+    scales, turns, places = rng.permutation(50) + 1.0, rng.uniform(0.0, 6.0, 50), rng.uniform(0.0, 900.0, (50, 2))
+    c, s = scales * np.cos(turns), scales * np.sin(turns)
+    shapes = [scales, turns] if n_columns == 4 else [c, -s, s, c]
+    keypoints = np.column_stack([places, *shapes]).astype(np.float32)
+    descriptors = rng.integers(0, 255, (50, 128)).astype(np.uint8)
+    path = tmp_path / "features.db"
+    with colmap.Database.open(path) as database:
+        camera = database.write_camera(colmap.Camera.create_from_model_name(1, "PINHOLE", 900.0, 900, 900))
+        for number, n in ((1, 50), (2, 30)):
+            image = database.write_image(colmap.Image(name=f"{number}.jpg", camera_id=camera))
+            database.write_keypoints(image, keypoints[:n])
+            database.write_descriptors(
+                image, colmap.FeatureDescriptors(colmap.FeatureExtractorType.SIFT, descriptors[:n])
+            )
+    keep_largest(path, 30)
+    large = scales > 20.0
+    with colmap.Database.open(path) as database:
+        for image, rows in ((1, large), (2, slice(0, 30))):
+            assert np.array_equal(np.asarray(database.read_keypoints(image)), keypoints[rows])
+            assert np.array_equal(np.asarray(database.read_descriptors(image).data), descriptors[rows])
 
 
 @pytest.mark.slow
