@@ -58,7 +58,17 @@ from reconstruction.coarse.cloud import (
 from reconstruction.coarse.ground_level import PICTURE_PX, level_of_ground
 from reconstruction.coarse.marks import agreeing_marks, factor_of_marks, is_in, meeting_place, scaled_marks
 from reconstruction.coarse.pairs import PairHint, PairParameters, choose_pairs, likeness_of
-from reconstruction.coarse.placing import NO_CONTROL, Above, Control, Measured, Placed, about_height, place_model
+from reconstruction.coarse.placing import (
+    NO_CONTROL,
+    Above,
+    Control,
+    Measured,
+    Placed,
+    about_height,
+    contradicts,
+    in_sigmas,
+    place_model,
+)
 from reconstruction.coarse.plane_sweep import PICTURE_PX as SWEPT_PX
 from reconstruction.coarse.plane_sweep import DenseDepth, joined, swept
 from reconstruction.coarse.walls import BuildingParameters, Ground, find_ground
@@ -579,6 +589,17 @@ def _in_place(
         run.adjust(free, fixed)
     model = as_model(free, scratch / "placed")
     placed, findings = _place(model, taken, stated, parameters)
+    lately: tuple[Finding, ...] = ()
+    if stated.lens is None and placed.scale_from == "positions" and len(model.images) >= LEAST_FOR_LENS:
+        own = _measured_of(model, taken)
+        if fixed and contradicts(placed, own):
+            other = run.with_found_lenses(free, fixed, scratch / "lenses")
+            other_model = as_model(other, scratch / "relensed")
+            again, found_again = _place(other_model, taken, stated, parameters)
+            if in_sigmas(again, own) < BETTER_LENS * in_sigmas(placed, own):
+                lately = _about_lens(placed, again)
+                free, fixed, model, placed, findings = other, set(), other_model, again, found_again
+        lately = lately or _about_positions(placed, own)
     model = in_enu(model, placed.enu_from_model)
     if placed.scale_from == "positions":
         used = {image.name for image, is_used in zip(model.images.values(), placed.is_used, strict=True) if is_used}
@@ -588,7 +609,43 @@ def _in_place(
             model = as_model(free, scratch / "added")
             placed, findings = _place(model, taken, stated, parameters)
             model = in_enu(model, placed.enu_from_model)
-    return placed, model, float(free.compute_mean_reprojection_error()), findings
+    return placed, model, float(free.compute_mean_reprojection_error()), (*findings, *lately)
+
+
+LEAST_FOR_LENS, BETTER_LENS = 10, 0.5
+"""Photos from which on a lens is found against what they state, and what is left of their distance from the model."""
+
+
+def _measured_of(model: ColmapModel, taken: _Taken) -> list[Measured]:
+    row_of = {name: row for row, name in enumerate(taken.names)}
+    return [taken.measured[row_of[image.name]] for image in model.images.values()]
+
+
+def _median_off_m(placed: Placed) -> float:
+    return float(np.nanmedian(np.linalg.norm(placed.residuals_m, axis=1)))
+
+
+def _about_lens(stated: Placed, found: Placed) -> tuple[Finding, ...]:
+    text = say(
+        "the lens that the photos state does not fit their positions, which the model then misses by {:.2f} m: it was "
+        "found with the model, which meets them to {:.2f} m",
+        _median_off_m(stated),
+        _median_off_m(found),
+    )
+    return (Finding(Severity.NOTE, "lens-contradicts", text, "", _median_off_m(stated), _median_off_m(found), "m"),)
+
+
+def _about_positions(placed: Placed, measured: Sequence[Measured]) -> tuple[Finding, ...]:
+    if not contradicts(placed, measured):
+        return ()
+    times = in_sigmas(placed, measured)
+    text = say(
+        "the model misses the photos' positions by {:.2f} m in the middle, {:.0f} times what these state: the lens, "
+        "the time of exposure or the mount of the antenna is off, or RTK was not fixed; check a known length",
+        _median_off_m(placed),
+        times,
+    )
+    return (Finding(Severity.WARNING, "positions-missed", text, "", _median_off_m(placed), None, "m"),)
 
 
 def _receivers(taken: _Taken) -> dict[str, Receiver]:

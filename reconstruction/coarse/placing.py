@@ -430,6 +430,24 @@ def _covariance(one: Measured) -> Array:
     return np.eye(3) if one.covariance is None else one.covariance
 
 
+def in_sigmas(placed: Placed, measured: Sequence[Measured]) -> float:
+    """Median distance of a model from where its photos say they were taken, in standard deviations of that; 0 for none.
+
+    Parameters
+    ----------
+    measured
+        Of each photo of the model.
+    """
+    sigmas = np.array([max(LEAST_SIGMA_M, math.sqrt(np.trace(_covariance(one)) / 3.0)) for one in measured])
+    far = np.linalg.norm(placed.residuals_m, axis=1) / sigmas
+    return float(np.median(far[np.isfinite(far)])) if np.isfinite(far).any() else 0.0
+
+
+def contradicts(placed: Placed, measured: Sequence[Measured]) -> bool:
+    """Whether most positions are further from the model than they can be by what they state of themselves."""
+    return in_sigmas(placed, measured) > ROBUST_SIGMAS * math.sqrt(3.0)
+
+
 def _sigmas(jacobian: Array, unit: float) -> tuple[float, float, float]:
     """Standard deviations of the tilt, the scale, and the heading; infinite for what nothing fixes."""
     values, axes = np.linalg.eigh(jacobian.T @ jacobian)

@@ -41,6 +41,9 @@ PAIRS_PER_CALL = 60
 
 LEAST_PHOTOS = 3
 
+LEAST_APART_RAD = np.radians(10.0)
+"""Between what usual photos look at and the mean of all, from which on a focal length can be told from a distance."""
+
 Pair = tuple[str, str]
 
 
@@ -353,8 +356,44 @@ class ColmapRun:
 
         return self._run(say("placing photos by their receivers"), work)
 
-    def adjust(self, model: Any, fixed_cameras: set[int]) -> None:
-        """Bundle adjustment with the photos' positions, in place."""
+    def with_found_lenses(self, model: Any, cameras: set[int], folder: Path) -> Any:
+        """A copy of a model, adjusted with the photos' positions, whose stated lenses are where that begins only.
+
+        Centres and distortion are found anew, and focal lengths where photos look in several directions: looking down
+        from one height, a longer one and a lower ground show the same. The denominators of the rational distortion are
+        left out, which positions say nothing of.
+
+        Parameters
+        ----------
+        folder
+            New folder for files in between.
+        """
+        folder.mkdir(parents=True)
+        model.write_binary(folder)
+        found = self.colmap.Reconstruction(folder)
+        for number in cameras & set(found.cameras):
+            camera = found.camera(number)
+            fx, fy, *others = list(camera.params)[:8]  # then cx, cy, k1, k2, p1, p2 in both models
+            camera.model = self.colmap.CameraModelId.OPENCV
+            camera.params = [0.5 * (fx + fy), 0.5 * (fx + fy), *others]
+        forwards = np.array([found.image(one).cam_from_world().rotation.matrix()[2] for one in found.reg_image_ids()])
+        mean = forwards.mean(axis=0) / np.linalg.norm(forwards.mean(axis=0))
+        apart = float(np.median(np.arccos(np.clip(forwards @ mean, -1.0, 1.0))))
+        self.adjust(found, set(), finds_centres=True, finds_focal_lengths=apart > LEAST_APART_RAD)
+        return found
+
+    def adjust(
+        self, model: Any, fixed_cameras: set[int], finds_centres: bool = False, finds_focal_lengths: bool = True
+    ) -> None:
+        """Bundle adjustment with the photos' positions, in place.
+
+        Parameters
+        ----------
+        finds_centres
+            Whether principal points are adjusted, too: positions to centimetres say where these are.
+        finds_focal_lengths
+            Whether focal lengths are.
+        """
         config = self.colmap.BundleAdjustmentConfig()
         photo_of = {photo.name: photo for photo in self.photos}
         priors = []
@@ -368,6 +407,7 @@ class ColmapRun:
             config.set_constant_cam_intrinsics(camera_id)
         options = self.colmap.BundleAdjustmentOptions()
         options.print_summary = False
+        options.refine_principal_point, options.refine_focal_length = finds_centres, finds_focal_lengths
         options.ceres.solver_options.num_threads = n_threads()
         prior_options = self.colmap.PosePriorBundleAdjustmentOptions()
         prior_options.alignment_ransac.random_seed = self.parameters.seed

@@ -13,7 +13,7 @@ from planning.geo.frames import Origin
 from planning.geo.geoid import ellipsoid_from_amsl_m
 from reconstruction.base.cameras import cam_from_enu
 from reconstruction.coarse.cloud import FoundPlane, Up, turn_upright, up_of_cameras, up_of_planes
-from reconstruction.coarse.placing import Above, Control, Measured, about_height, place_model
+from reconstruction.coarse.placing import Above, Control, Measured, about_height, contradicts, in_sigmas, place_model
 from reconstruction.colmap.georeference import Similarity
 
 TRUTH = Similarity(3.7, Rotation.from_euler("zyx", [0.7, 0.4, -1.1]).as_matrix(), np.array([12.0, -5.0, 30.0]))
@@ -235,3 +235,23 @@ def test_receivers_that_put_the_ground_below_the_sea_are_told(ground_amsl_m, cod
     findings = about_height(origin)
     assert [finding.code for finding in findings] == codes
     assert all("56 m below sea level" in str(finding.message) for finding in findings)
+
+
+@pytest.mark.parametrize(("sigma_m", "is_wrong"), [(0.02, True), (1.0, False)])
+def test_positions_that_are_stated_better_than_the_model_meets_them_contradict_it(sigma_m, is_wrong):
+    """Strips flown to and fro, off by 0.5 m to one side and the other, as a lens with a wrong centre puts them."""
+    places, turns = orbit()
+    centres, rotations = as_model(places, turns)
+    side = np.where(np.arange(len(places)) % 2, 0.5, -0.5)[:, None] * (1.0, 0.0, 0.0)
+    measured = [Measured(place, sigma_m**2 * np.eye(3)) for place in places + side]
+    placed = place_model(centres, rotations, measured, up_in_model())
+    assert in_sigmas(placed, measured) == pytest.approx(0.5 / sigma_m, rel=0.1)
+    assert contradicts(placed, measured) is is_wrong
+
+
+def test_photos_without_positions_contradict_nothing():
+    places, turns = orbit()
+    centres, rotations = as_model(places, turns)
+    unknown = [Measured() for _ in places]
+    placed = place_model(centres, rotations, unknown, up_in_model(), above=Above(5.0))
+    assert not contradicts(placed, unknown)

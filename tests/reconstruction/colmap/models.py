@@ -33,10 +33,12 @@ def covariance(sigma_m: float, sigma_deg: float = 1.0) -> np.ndarray:
     return np.diag([sigma_m**2] * 3 + [np.radians(sigma_deg) ** 2] * 3)
 
 
-def model(posed: list[PosedPhoto], n_points=150, seed=0, sigma_px=0.0) -> ColmapModel:
-    """What the photos see of random points near the facade, with noise."""
+def model(
+    posed: list[PosedPhoto], n_points=150, seed=0, sigma_px=0.0, low=(-9.0, -0.3, 0.0), high=(9.0, 0.6, 12.0)
+) -> ColmapModel:
+    """What the photos see of random points, near the facade or in another box, with noise."""
     rng = np.random.default_rng(seed)
-    xyz = rng.uniform((-9.0, -0.3, 0.0), (9.0, 0.6, 12.0), (n_points, 3))
+    xyz = rng.uniform(low, high, (n_points, 3))
     images, tracks = {}, [[] for _ in range(n_points)]
     for number, photo in enumerate(posed, 1):
         seen = np.flatnonzero(photo.sees(xyz))

@@ -12,11 +12,12 @@ import pytest
 
 from planning.base.errors import InputError, OperationCancelled, ReconstructionError
 from planning.base.progress import QUIET
-from reconstruction.base.cameras import Intrinsics, PosedPhoto
+from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.colmap import refine
-from reconstruction.colmap.folder import read_model
+from reconstruction.colmap.folder import read_model, write_model
 from reconstruction.colmap.georeference import Similarity, angle_between_deg, georeference, posed_photos
-from reconstruction.colmap.pycolmap_run import ColmapRun, keep_largest
+from reconstruction.colmap.pycolmap_run import ColmapRun, StartPhoto, keep_largest
+from reconstruction.colmap.record import camera_of
 from reconstruction.colmap.refine import RefineParameters, _covariances, refine_poses
 from tests.reconstruction.colmap.models import covariance, model, photos, turned
 
@@ -69,6 +70,40 @@ def test_the_largest_features_are_kept_in_their_order(tmp_path, n_columns):
         for image, rows in ((1, large), (2, slice(0, 30))):
             assert np.array_equal(np.asarray(database.read_keypoints(image)), keypoints[rows])
             assert np.array_equal(np.asarray(database.read_descriptors(image).data), descriptors[rows])
+
+
+@pytest.mark.parametrize("tilt_deg", [0.0, 25.0])
+def test_positions_to_centimetres_find_a_lens_that_was_stated_wrongly(tmp_path, tilt_deg):
+    """A grid flown to and fro, looking straight down: as a calibration of DJI's was off by 1 % and 30 pixels."""
+    colmap = pytest.importorskip("pycolmap", reason="pycolmap is not installed (pip install .[colmap])")
+    true = Intrinsics(1600, 1300, 1986.0, 1986.0, 788.0, 660.0, (-0.41, 0.21, 0.001, 0.0, 0.0))
+    stated = Intrinsics(1600, 1300, 1973.0, 1956.0, 781.0, 630.0, (-0.42, 0.37, 0.004, 0.004, -0.26))
+    posed = []
+    for number in range(24):
+        strip, step = divmod(number, 8)
+        place = np.array([-14.0 + 4.0 * (7 - step if strip % 2 else step), 8.0 * (strip - 1), 44.0])
+        pose = Pose.looking(place, 90.0 - 180.0 * (strip % 2), -90.0 + tilt_deg * (step % 2), 0.0, covariance(0.02))
+        posed.append(PosedPhoto(f"{number:02d}.jpg", Path(f"{number:02d}.jpg"), true, pose))
+    seen = model(posed, 2500, sigma_px=0.3, low=(-20.0, -16.0, 0.0), high=(20.0, 16.0, 6.0))
+    write_model(tmp_path, replace(seen, cameras={1: camera_of(stated, 1)}), "txt")
+    places = [StartPhoto(photo.name, "drone", stated, photo.pose.position_enu_m, 0.01 * np.eye(3)) for photo in posed]
+    run = ColmapRun(colmap, tmp_path, tmp_path, places, RefineParameters(), QUIET)
+
+    def off_m(adjusted):
+        true_m = {photo.name: photo.pose.position_enu_m for photo in posed}
+        images = [adjusted.image(number) for number in adjusted.reg_image_ids()]
+        return np.median([np.linalg.norm(image.projection_center() - true_m[image.name]) for image in images])
+
+    as_stated = colmap.Reconstruction(tmp_path)
+    run.adjust(as_stated, {1})
+    assert off_m(as_stated) > 0.06
+    found = run.with_found_lenses(as_stated, {1}, tmp_path / "lenses")
+    assert off_m(found) < 0.02
+    fx, fy, cx, cy = found.camera(1).params[:4]
+    # Straight down from one height, the ground may be as much lower as the focal length is longer.
+    assert np.allclose((fx, fy), 1986.0, atol=6.0) if tilt_deg else (fx, fy) == pytest.approx((1964.5, 1964.5))
+    assert np.allclose((cx, cy), (788.0, 660.0), atol=3.0)
+    assert np.allclose(as_stated.camera(1).params[:4], (1973.0, 1956.0, 781.0, 630.0))
 
 
 @pytest.mark.slow
