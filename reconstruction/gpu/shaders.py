@@ -9,6 +9,9 @@ A file is WGSL but for lines that begin with `//:`
 
 Numbers among the constants are declared as constants of WGSL. Lines are written out because loops over private arrays
 are not unrolled by all drivers, and arrays that are indexed by a variable are slow memory.
+
+No branch and no loop's end depends on uniforms alone, but for those of a model that stay as they are: lavapipe compiles
+such a kernel anew whenever other uniforms, as of the camera, change.
 """
 
 from __future__ import annotations

@@ -106,7 +106,6 @@ def fits_card_step(model: SceneModel, config: TrainConfig) -> bool:
         and type(model.shader) is Shader
         and (model.light is None or model.geometry == "panels")
         and config.losses.normal_smoothness == 0.0
-        and config.transients == "off"
     )
 
 
@@ -137,6 +136,8 @@ class CardGradients:
     ----------
     n_pixels
         Of the picture; gradients are those of the loss times as many.
+    looked_at
+        SRGB values, shape (h, w, 3), and weighted depths, shape (h, w), of the picture; None where nobody asked.
     """
 
     drawing: Drawing
@@ -145,6 +146,7 @@ class CardGradients:
     of_parameters: list[Piece]
     weights: Piece
     n_pixels: int
+    looked_at: tuple[Tensor, Tensor] | None = None
 
 
 class CardStep:
@@ -181,6 +183,8 @@ class CardStep:
         progress: float,
         generator: torch.Generator | None,
         more: Tensor | None = None,
+        *,
+        is_looked_at: bool = False,
     ) -> tuple[CardGradients, dict[str, float]]:
         """Of a photo: those of splats stay on the card, all others reach what `gain`, `move` and the model are of.
 
@@ -192,6 +196,8 @@ class CardStep:
             As for `objective`.
         more
             Added to the loss, with gradients of its own.
+        is_looked_at
+            Whether the picture is brought back, too.
 
         Raises
         ------
@@ -213,7 +219,9 @@ class CardStep:
         light = self._light(view, generator)
         sky = model.sky.picture()
         with self.device.errors_said():
-            picture = _CardPicture(self.device, drawing, splats, sample, light, sky, model, gain, weights, progress)
+            picture = _CardPicture(
+                self.device, drawing, splats, sample, light, sky, model, gain, weights, progress, is_looked_at
+            )
             commands = self.device.commands()
             for window, channels in zip(drawing.windows, blended, strict=True):
                 if light is not None:
@@ -231,16 +239,18 @@ class CardStep:
             ]
             slots = WORDS | SLOTS
             splats.add_up(commands, view, degree, totals, of_parameters, picture.sums, slots, moves=move is not None)
-            raw_sums, *of_light = commands.read(picture.read_sums, *(() if light is None else light.asked(picture)))
+            of_light = () if light is None else light.asked(picture)
+            raw_sums, *read = commands.read(picture.read_sums, *of_light, *picture.read_look)
             sums = _Sums.of(raw_sums)
         terms = picture.terms(sums)
         if not np.isfinite(sum(terms.values())):
             raise NotFinite("the loss is not a number")
-        of_mirrored = [] if light is None else light.gradients(of_light[0], n_pixels)
+        of_mirrored = [] if light is None else light.gradients(read[0], n_pixels)
         if sums.count("IS_BAD") or of_mirrored is None:
             raise NotFinite("a gradient is not a number")
         _give_back(model, gain, move, of_mirrored, sky, more, sums, n_pixels)
-        return CardGradients(drawing, degree, totals, of_parameters, of_splats, n_pixels), terms
+        looked_at = picture.look(read[-1]) if is_looked_at else None
+        return CardGradients(drawing, degree, totals, of_parameters, of_splats, n_pixels, looked_at), terms
 
     def _light(self, view: View, generator: torch.Generator | None) -> _MirroredLight | _MarchedLight | None:
         """What is mirrored in a view: to be marched on the card, or found out here."""
@@ -362,7 +372,7 @@ class _MarchedLight:
         self.device, self.grid, grid = device, glass.light, glass.light
         self.tilts, self.bows = glass.true_tilts(), glass.bows
         panels = panels_in_view(view, model.corners_m)
-        self.n_panes, self.n_pixels = len(model.corners_m), panels.size
+        self.n_panes, self.n_pixels, self.n_rays = len(model.corners_m), panels.size, glass.rays
         self.pane_numbers = _written(device, (panels + 1).astype(np.uint32))
         eye = -view.cam_from_world[:3, :3].numpy().T @ view.cam_from_world[:3, 3].numpy()
         self.panes = _table(device, _pane_texels(model, eye, self.tilts, self.bows))
@@ -417,7 +427,7 @@ class _MarchedLight:
     ) -> None:
         mirrored, *sums = others
         commands.run(
-            name, GRID | quads(GLASS_FEATURES), groups_of(n_pixels_of(window, drawing.view)),
+            name, GRID | quads(GLASS_FEATURES) | {"N_RAYS": self.n_rays}, groups_of(n_pixels_of(window, drawing.view)),
             drawing.uniform(window.bins), self._uniform, self.panes, self.times, self.cells, self.far, self.skips,
             self.pane_numbers, channels, mirrored, self.kept, *sums,
         )  # fmt: skip
@@ -478,6 +488,7 @@ class _CardPicture:
         gain: Tensor,
         weights: LossWeights,
         progress: float,
+        is_looked_at: bool,
     ) -> None:
         self.device, self.drawing, self.view = device, drawing, drawing.view
         self.n_quads, self.n_sky = splats.n_quads, sky.numel()
@@ -488,7 +499,8 @@ class _CardPicture:
         has_mesh = with_glass and weights.normal_prior > 0.0 and sample.normals is not None
         self.by_mesh = weights.normal_prior if has_mesh else 0.0
         self.constants = PICTURE | WORDS | SLOTS | quads(self.n_quads) | {"GLASS": int(with_glass)}
-        self.constants["MESH"] = int(has_mesh)
+        self.constants |= {"MESH": int(has_mesh), "DEPTH": int(self.by_depth > 0.0), "LOOKED_AT": int(is_looked_at)}
+        self._look = (device.buffer(16 * n),) if is_looked_at else ()
         self.truth = _written(device, packed_photo(sample))
         self.mirrored = device.buffer(16 * n) if light is None else light.written(device, view)
         self.reference = self.truth
@@ -520,7 +532,7 @@ class _CardPicture:
         n_groups = self._groups(n_pixels_of(window, self.view))
         commands.run(
             "light_pixels", self.constants, n_groups, self.drawing.uniform(window.bins), self._uniform, self.sky,
-            channels, window.states, self.truth, self.mirrored, self.found, self.bodies, self.sums,
+            channels, window.states, self.truth, self.mirrored, self.found, self.bodies, self.sums, *self._look,
         )  # fmt: skip
 
     def compare(self, commands: Commands) -> None:
@@ -560,6 +572,16 @@ class _CardPicture:
     def read_sums(self) -> tuple[Piece, int]:
         """What is to be read of the card for `_Sums`."""
         return self.sums, self.n_sum_bytes
+
+    @property
+    def read_look(self) -> list[tuple[Piece, int]]:
+        """What is to be read of the card for `look`."""
+        return [(piece, 16 * self.n) for piece in self._look]
+
+    def look(self, raw: NDArray[np.uint8]) -> tuple[Tensor, Tensor]:
+        """The picture's sRGB values, shape (h, w, 3), and weighted depths, shape (h, w)."""
+        values = torch.from_numpy(raw.view(np.float32).reshape(self.view.height_px, self.view.width_px, 4))
+        return values[..., :3], values[..., 3]
 
     def terms(self, sums: _Sums) -> dict[str, float]:
         """What each weighted term adds to the loss, as `objective` has it."""

@@ -491,19 +491,26 @@ class Trainer(TrainingState):
         strategy = self.strategy if is_growing else self._no_more
         stage = config.losses.stage(self.progress) if self._with_glass else None
         weight = 0.0 if stage is None else stage.weight
+        self.transients.settle(config.transients, self.progress)
+        looked_at = replace(sample, shown=self.transients.lasting(sample)) if config.transients != "off" else sample
+        is_looked_at = self.transients.are_looked_for(config.transients)
         card = self._card_step()
         if card is not None:
             found, terms = card.gradients(
-                sample, self.exposures(sample.number), move, config.degree_at(self.progress), self._settings,
-                config.losses, self.progress, self._jitter(), more,
+                looked_at, self.exposures(sample.number), move, config.degree_at(self.progress), self._settings,
+                config.losses, self.progress, self._jitter(), more, is_looked_at=is_looked_at,
             )  # fmt: skip
             self._require_finite(None)
+            if found.looked_at is not None:
+                self.transients.see(sample, *found.looked_at)
             self.is_editing = True
             self._learn_on(card, found, strategy, 1.0 + weight)
         else:
             offsets = torch.zeros(len(splats), 2, device=self.device, requires_grad=True)
             picture = self.picture(sample, self.exposures(sample.number), offsets, move)
-            terms = self._gradients(picture, sample, more)
+            terms = self._gradients(picture, looked_at, more)
+            if is_looked_at:
+                self.transients.see(sample, picture.display, picture.raster.depths)
             self.is_editing = True
             observe_pictures(strategy, picture.raster, offsets, samples, self._ranks, weight)
             strategy.before_step(at.step, splats, self.optimiser)
@@ -521,16 +528,10 @@ class Trainer(TrainingState):
 
     def _gradients(self, picture: Picture, sample: Sample, more: Tensor | None) -> dict[str, float]:
         """Gradients of a picture's loss; what each term of it was."""
-        config, looked_at = self.config, sample
-        self.transients.settle(config.transients, self.progress)
-        if config.transients != "off":
-            looked_at = replace(sample, shown=self.transients.lasting(sample))
-        loss, terms = objective(picture, looked_at, config.losses, self.progress, self._with_glass)
+        loss, terms = objective(picture, sample, self.config.losses, self.progress, self._with_glass)
         loss = loss if more is None else loss + more
         loss.backward()  # type: ignore[no-untyped-call]
         self._require_finite(loss.detach())
-        if self.transients.are_looked_for(config.transients):
-            self.transients.see(sample, picture.display, picture.raster.depths)
         return terms
 
     def _require_finite(self, loss: Tensor | None) -> None:

@@ -19,8 +19,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     if (first == behind || i < view.part.x || i - view.part.x >= view.part.y) { return; }
     let place = (i - view.part.x) * 8u;
 //: for q in EIGHT
-    var total$q = vec4f(0.0);
-    if (view.part.z == 1u) { total$q = totals[place + $qu]; }
+    var total$q = totals[place + $qu];
 //: end
     for (var at = first; at < behind; at++) {
 //: for q in EIGHT

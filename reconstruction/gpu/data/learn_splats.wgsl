@@ -171,9 +171,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
         let step = select(vec3f(s.xy, 0.0), s, SOLID == 1u);
         learned[at] = vec4f(moved.xyz + step + 2.0 * cross(v, cross(v, step) + w * step), moved.w);
     }
-    if (learning.pulls.w > 0.0) {
-        let old = seen[at];
-        seen[at] = vec4f(old.x + learning.other.w * length(g3.xy), old.y + select(0.0, 1.0, radii[i] > 0.0),
-            old.z + weights[i], max(old.w, radii[i] / learning.pulls.z));
-    }
+    let old = seen[at];
+    let more = vec4f(old.x + learning.other.w * length(g3.xy), old.y + select(0.0, 1.0, radii[i] > 0.0),
+        old.z + weights[i], max(old.w, radii[i] / learning.pulls.z));
+    seen[at] = select(old, more, learning.pulls.w > 0.0);
 }

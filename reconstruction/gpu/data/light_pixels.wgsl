@@ -16,6 +16,9 @@
 @group(0) @binding(7) var found: texture_storage_2d<rgba32float, write>;
 @group(0) @binding(8) var bodies: texture_storage_2d<rgba32float, write>;
 @group(0) @binding(9) var<storage, read_write> sums: array<atomic<u32>>;
+//: if LOOKED_AT
+@group(0) @binding(10) var<storage, read_write> looked_at: array<vec4f>;
+//: end
 
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u,
@@ -48,6 +51,9 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
         textureStore(found, texel(number), vec4f(compared, state.x));
         textureStore(bodies, texel(number),
             vec4f(body.normal, select(-1.0, state.y / state.x, state.x > CLOSED)));
+//: if LOOKED_AT
+        looked_at[number] = vec4f(display, state.y);
+//: end
         let off = dot(abs(compared - wanted), vec3f(1.0));
         error += off;
         if (picture.size.w != 0u && (word & FACADE) != 0u && off > picture.lens.w) {

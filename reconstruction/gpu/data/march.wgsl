@@ -18,11 +18,10 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     let pane = pane_numbers[number];
     mirrored[number] = vec4f(0.0, 0.0, 0.0, -1.0);
     if (pane == 0u || blended[N_QUADS * place].w <= LEAST_REFLECTIVITY) { return; }
-    let n_rays = mirrors.rays.x * mirrors.rays.x;
     var inside = vec4f(0.0);
     var all_of_them = vec4f(0.0);
     var n_inside = 0.0;
-    for (var k = 0u; k < n_rays; k++) {
+    for (var k = 0u; k < N_RAYS; k++) {
         let ray = mirrored_ray(pane - 1u, pixel, number, k);
         let line = line_of(ray);
         let start = start_of(number, k);
@@ -53,7 +52,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
         }
         let root = root_of_far(far_around(ray.way));
         light += through * root * root;
-        kept[number * n_rays + k] = vec4f(light, through);
+        kept[number * N_RAYS + k] = vec4f(light, through);
         let found = vec4f(light, min(abs(ray.along), 1.0));
         all_of_them += found;
         if (ray.is_inside) {
@@ -61,5 +60,5 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
             n_inside += 1.0;
         }
     }
-    mirrored[number] = select(all_of_them / f32(n_rays), inside / max(n_inside, 1.0), n_inside > 0.0);
+    mirrored[number] = select(all_of_them / f32(N_RAYS), inside / max(n_inside, 1.0), n_inside > 0.0);
 }

@@ -37,19 +37,18 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     let number = pixel.y * view.size.x + pixel.x;
     let pane = pane_numbers[number];
     if (pane == 0u || blended[N_QUADS * place].w <= LEAST_REFLECTIVITY) { return; }
-    let n_rays = mirrors.rays.x * mirrors.rays.x;
     var n_inside = 0.0;
-    for (var k = 0u; k < n_rays; k++) {
+    for (var k = 0u; k < N_RAYS; k++) {
         n_inside += select(0.0, 1.0, mirrored_ray(pane - 1u, pixel, number, k).is_inside);
     }
     let scale = scale_of_cells();
     var of_tilts = vec2f(0.0);
     var of_bows = vec2f(0.0);
-    for (var k = 0u; k < n_rays; k++) {
+    for (var k = 0u; k < N_RAYS; k++) {
         let ray = mirrored_ray(pane - 1u, pixel, number, k);
         if (n_inside > 0.0 && !ray.is_inside) { continue; }
-        let g = mirrored[number] / select(f32(n_rays), n_inside, n_inside > 0.0);
-        let whole = kept[number * n_rays + k];
+        let g = mirrored[number] / select(f32(N_RAYS), n_inside, n_inside > 0.0);
+        let whole = kept[number * N_RAYS + k];
         let line = line_of(ray);
         let start = start_of(number, k);
         var behind = dot(g.xyz, whole.xyz);

@@ -38,7 +38,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     var of_normal = vec3f(0.0);
     var of_alpha = 0.0;
     var of_depth = 0.0;
-    if (weights.by_depth > 0.0) {
+//: if DEPTH
+    {
         let each = weights.by_depth / max(f32(sums[N_KNOWN]), 1.0);
         let s = surface_at(column, row);
         if (s.is_known) {
@@ -55,6 +56,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
             of_alpha -= over * depth;
         }
     }
+//: end
 //: if MESH
     if (has_reference(number)) {
         let off = textureLoad(bodies, texel(number), 0).xyz - reference[number].xyz;

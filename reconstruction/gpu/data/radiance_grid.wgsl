@@ -45,11 +45,8 @@ fn mirrored_ray(pane: u32, pixel: vec2u, number: u32, k: u32) -> Ray {
     let f = textureLoad(panes, texel(6u * pane + 4u), 0);
     let bows = textureLoad(panes, texel(6u * pane + 5u), 0).xy;
     let side = mirrors.rays.x;
-    var within = vec2f(0.5);
-    if (mirrors.rays.z != 0u) {
-        let ray = number * side * side + k;
-        within = vec2f(hashed_share(ray, 0u), hashed_share(ray, 1u));
-    }
+    let ray = number * side * side + k;
+    let within = select(vec2f(0.5), vec2f(hashed_share(ray, 0u), hashed_share(ray, 1u)), mirrors.rays.z != 0u);
     let offset = (vec2f(f32(k % side), f32(k / side)) + within) / f32(side) - 0.5;
     let slope = (vec2f(pixel) + 0.5 + offset - view.lens.zw) / view.lens.xy;
     var r: Ray;
@@ -70,8 +67,7 @@ fn mirrored_ray(pane: u32, pixel: vec2u, number: u32, k: u32) -> Ray {
 
 // Share of a step by which a ray's places are further on: spread evenly.
 fn start_of(number: u32, k: u32) -> f32 {
-    if (mirrors.turn.w > 0.0) { return 0.5; }
-    return hashed_share(number * mirrors.rays.x * mirrors.rays.x + k, 2u);
+    return select(hashed_share(number * mirrors.rays.x * mirrors.rays.x + k, 2u), 0.5, mirrors.turn.w > 0.0);
 }
 
 // -1 to 1 stays; what is beyond, up to infinity, goes on to 1 + outer.

@@ -13,5 +13,5 @@ struct View {
     reaches: vec4f,             // of an opaque splat, steepest plane, least opacity that is left, least area
     size: vec4u,                // width and height, pixels; splats; splats in front of the camera
     bins: vec4u,                // of the window that is drawn: first column and row, columns and rows
-    part: vec4u,                // of the splats whose gradients are added up: first, number, whether to more
+    part: vec4u,                // of the splats whose gradients are added up: first, number
 }

@@ -210,10 +210,10 @@ class Drawing:
                 )
         commands.submit()
 
-    def uniform(self, bins: Bins | None = None, part: tuple[int, int] = (0, 0), *, to_more: bool = False) -> bytes:
+    def uniform(self, bins: Bins | None = None, part: tuple[int, int] = (0, 0)) -> bytes:
         """What kernels know of the picture, and of a window or a part of the splats."""
         window = (0, 0, 0, 0) if bins is None else (bins.column, bins.row, bins.n_columns, bins.n_rows)
-        return self._uniform + uniform(*window, *part, int(to_more), 0)
+        return self._uniform + uniform(*window, *part, 0, 0)
 
     def _fits(self, bins: Bins, n_pairs: int, n_patches: int) -> bool:
         rows, columns = bins.pixels(self.view)
@@ -365,9 +365,8 @@ class Drawing:
             commands.copy_to_table(rows, sums, ROW_QUADS * window.n_patches)
         for part, piece in zip(parts, totals, strict=True):
             if self.settings.deterministic:
-                to_more = window is not self.windows[0]
                 commands.run(
-                    "add_sums", constants, groups_of(self.n), self.uniform(part=part, to_more=to_more),
+                    "add_sums", constants, groups_of(self.n), self.uniform(part=part),
                     self.order, window.firsts, sums, piece,
                 )  # fmt: skip
             else:

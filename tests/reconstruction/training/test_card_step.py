@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import copy
+import os
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -52,6 +56,7 @@ from tests.reconstruction.splats.drawn_splats import (
     turned_view,
 )
 
+ROOT = Path(__file__).parents[3]
 GRADIENT_ERROR = 1e-4
 LATE, EARLY = 0.6, 0.1
 """Of a training's progress: with all losses, and with the first ones only."""
@@ -258,6 +263,61 @@ def test_mirrored_rays_march_through_the_radiance_grid_forward_and_back_as_on_th
         if gradient is not None:
             assert float(gradient.norm()) > 0.0, name
             assert relative_error(found.gradients[name], gradient) < GRADIENT_ERROR, name
+
+
+@pytest.mark.parametrize("glass", [False, True])
+def test_the_picture_of_a_step_can_be_looked_at(glass: bool) -> None:
+    view = turned_view(47, 35, 45.0)
+    model, sample = made_model(view, glass=glass), made_sample(view, glass=glass)
+    gain, move = start(torch.float32)
+    picture = model(view, gain, 3, settings=ANTIALIASED, move=move)
+    step = CardStep(open_device(), model, optimiser_of(model))
+    found, _ = step.gradients(sample, gain, move, 3, ANTIALIASED, WEIGHTS, LATE, None, is_looked_at=True)
+    display, depths = found.looked_at
+    # Where the photo is left out, too: what is no transient after all is found there.
+    assert not sample.shown.all()
+    assert relative_error(display, picture.display.detach()) < GRADIENT_ERROR
+    assert relative_error(depths, picture.raster.depths.detach()) < GRADIENT_ERROR
+    unseen, _ = step.gradients(sample, gain, move, 3, ANTIALIASED, WEIGHTS, LATE, None)
+    assert unseen.looked_at is None
+
+
+STEPS = 12
+"""Of which the first two compile."""
+
+
+def print_kept_kernels() -> None:
+    """Take steps from another place, of another seed and of other brightness each; print how many kernels are kept."""
+    kept, view = Path(os.environ["MESA_SHADER_CACHE_DIR"]), turned_view(47, 35, 45.0)
+    model, sample = made_model(view, glass=True, light=made_grid()), made_sample(view, glass=True)
+    card, strategy = CardStep(open_device(), model, optimiser_of(model), marches=True), FixedNumber()
+    for number in range(STEPS):
+        gain, move = start(torch.float32)
+        gain, move = ((1.0 + 0.1 * number) * values.detach() for values in (gain, move))
+        found, _ = card.gradients(
+            sample, gain, move.requires_grad_(), 3, ANTIALIASED, WEIGHTS, LATE, seeded(number), is_looked_at=True
+        )
+        card.learn(found, Rates(), strategy, Limits(), number, observed=1.0 + number, jitters=True)
+        sys.stdout.write(f"{sum(path.is_file() for path in kept.rglob('*'))}\n")
+
+
+def test_no_kernel_is_compiled_anew_from_step_to_step(tmp_path: Path) -> None:
+    if not open_device().adapter.is_software:
+        pytest.skip("only Mesa's adapters that are programs show what they compile")
+    # What Mesa compiles for a pipeline it keeps, each in a file of its own.
+    settings = {"CACHE_DIR": str(tmp_path), "CACHE_DISABLE": "false"}
+    environment = os.environ | {f"MESA_SHADER_{name}": value for name, value in settings.items()}
+    environment |= {"MESA_DISK_CACHE_SINGLE_FILE": "false", "MESA_DISK_CACHE_DATABASE": "false"}
+    command = f"from {__name__} import print_kept_kernels; print_kept_kernels()"
+    done = subprocess.run(
+        [sys.executable, "-c", command], cwd=ROOT, env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    kept = [int(line) for line in done.stdout.split()]
+    assert len(kept) == STEPS
+    assert kept[1] > 20, "Mesa keeps nothing"
+    # A file may be written somewhat late; a kernel that uniforms are compiled into comes once a step.
+    assert kept[-1] - kept[1] < (STEPS - 2) // 2, kept
 
 
 def card_similarity(found: Tensor, photo: Tensor) -> tuple[float, Tensor]:
