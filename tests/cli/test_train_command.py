@@ -326,6 +326,17 @@ def test_a_site_tells_the_global_ids_of_panels(reflight, glass, tmp_path):
     assert found == {panel["id"]: panel["source_id"] for panel in panels}
 
 
+def test_panels_without_splats_are_named(reflight, glass, tmp_path):
+    shutil.copytree(glass / "model", tmp_path / "model")
+    content = json.loads((tmp_path / "model" / "model.json").read_text())
+    panel = content["site"]["panels"][0]
+    panel |= {"id": "far away", "corners_enu_m": [[x, y + 500.0, z] for x, y, z in panel["corners_enu_m"]]}
+    (tmp_path / "model" / "model.json").write_text(json.dumps(content))
+    done = reflight("organise", tmp_path / "model", "-o", tmp_path / "scene")
+    assert "1 panel without Gaussians of their own (far away)" in done.out
+    assert reflight("organise", glass / "model", "-o", tmp_path / "all", "--json").json["empty_panels"] == []
+
+
 def test_what_is_no_model_is_not_organised(reflight, glass, tmp_path):
     done = reflight("organise", glass / "data", "-o", tmp_path / "scene")
     assert done.status == 1

@@ -15,6 +15,9 @@ EPILOG = """examples:
   organise tower.model -o tower.gsscene --site tower.json
 """
 
+SHOWN = 8
+"""Names of panels."""
+
 
 def add_parser(subparsers: Any) -> None:
     """Describe the command."""
@@ -46,7 +49,11 @@ def run(options: argparse.Namespace) -> int:
     show(about(done.folder, joined(", ", (counted(n, name) for n, name in parts))))
     if done.n_given_ids:
         tell("{} with the GlobalId of the building model", counted(done.n_given_ids, "panel"))
-    if done.n_empty:
-        empty = counted(done.n_empty, "panel")
-        tell("{} without Gaussians of their own: no photo showed them, or the method knows no panels", empty)
+    if done.empty:
+        names = ", ".join(done.empty[:SHOWN]) + (" ..." if len(done.empty) > SHOWN else "")
+        tell(
+            "{} without Gaussians of their own ({}): no photo showed them, or the method knows no panels",
+            counted(len(done.empty), "panel"),
+            names,
+        )
     return 0

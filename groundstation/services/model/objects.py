@@ -25,8 +25,8 @@ class Organised:
     ----------
     n_given_ids
         Panels whose GlobalId is that of a building model.
-    n_empty
-        Panels without Gaussians.
+    empty
+        Names of panels without Gaussians.
     """
 
     folder: Path
@@ -34,7 +34,7 @@ class Organised:
     n_elements: int
     n_gaussians: int
     n_given_ids: int
-    n_empty: int
+    empty: tuple[str, ...]
 
     def summary(self) -> dict[str, Any]:
         """For JSON."""
@@ -44,7 +44,8 @@ class Organised:
             "elements": self.n_elements,
             "gaussians": self.n_gaussians,
             "given_ids": self.n_given_ids,
-            "empty": self.n_empty,
+            "empty": len(self.empty),
+            "empty_panels": list(self.empty),
         }
 
 
@@ -81,7 +82,7 @@ def organise_files(
         len(elements),
         scene.n_gaussians,
         len(PanelGlobalIds.of(trained.record, source_ids).source_ids),
-        sum(element.n_gaussians == 0 for element in elements),
+        tuple(element.name for element in elements if element.n_gaussians == 0),
     )
 
 
