@@ -1118,8 +1118,8 @@ Bild in dieser Entfernung: {4} x {5}</translation>
 <context>
     <name>EffectsPanel</name>
     <message>
-        <source>What the scene calls for stands here, once there is a site with panels.</source>
-        <translation>Hier steht, was die Szene verlangt, sobald es einen Standort mit Scheiben gibt.</translation>
+        <source>What the scene calls for stands here, once the panels of a site were looked at.</source>
+        <translation>Hier steht, was die Szene verlangt, sobald die Scheiben eines Standorts betrachtet sind.</translation>
     </message>
 </context>
 <context>
@@ -1351,6 +1351,13 @@ Blickrichtung: {2}</translation>
     <message>
         <source>Photos</source>
         <translation>Fotos</translation>
+    </message>
+</context>
+<context>
+    <name>FileBox</name>
+    <message>
+        <source>Without</source>
+        <translation>Ohne</translation>
     </message>
 </context>
 <context>
@@ -1910,88 +1917,12 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
         <translation>Startplatz zum Fluggerät</translation>
     </message>
     <message>
-        <source>Home is where the aircraft stands: plan again, then connect anew.</source>
-        <translation>Der Startplatz ist jetzt, wo das Fluggerät steht: neu planen, dann neu verbinden.</translation>
-    </message>
-    <message>
-        <source>returns once the others have landed</source>
-        <translation>kehrt zurück, sobald die anderen gelandet sind</translation>
-    </message>
-    <message>
-        <source>Aircraft {0} has sortie {1} already: choose another sortie.</source>
-        <translation>Fluggerät {0} hat Einsatz {1} schon: wählen Sie einen anderen Einsatz.</translation>
-    </message>
-    <message>
-        <source>Aircraft {0} is connected at that address: give this one an address of its own.</source>
-        <translation>Fluggerät {0} ist unter dieser Adresse verbunden: geben Sie diesem eine eigene Adresse.</translation>
-    </message>
-    <message>
         <source>Prepare the flight</source>
         <translation>Flug vorbereiten</translation>
     </message>
     <message>
-        <source>connecting</source>
-        <translation>Verbindung wird aufgebaut</translation>
-    </message>
-    <message>
-        <source>simulated battery: {0:.0%}, as the flight before left it</source>
-        <translation>simulierter Akku: {0:.0%}, wie ihn der Flug davor hinterließ</translation>
-    </message>
-    <message>
-        <source>autopilot: {0}</source>
-        <translation>Autopilot: {0}</translation>
-    </message>
-    <message>
-        <source>link lost</source>
-        <translation>Verbindung verloren</translation>
-    </message>
-    <message>
-        <source>link lost: {0}</source>
-        <translation>Verbindung verloren: {0}</translation>
-    </message>
-    <message>
-        <source>link alive</source>
-        <translation>Verbindung steht</translation>
-    </message>
-    <message>
-        <source>link found again</source>
-        <translation>Verbindung wieder da</translation>
-    </message>
-    <message>
-        <source>disconnected</source>
-        <translation>getrennt</translation>
-    </message>
-    <message>
-        <source>landed</source>
-        <translation>gelandet</translation>
-    </message>
-    <message>
-        <source>landed; select it for its report</source>
-        <translation>gelandet; wählen Sie es aus, um seinen Bericht zu sehen</translation>
-    </message>
-    <message>
-        <source>proved by its checksum</source>
-        <translation>durch seine Prüfsumme bewiesen</translation>
-    </message>
-    <message>
-        <source>not proved: it knows no checksums</source>
-        <translation>nicht bewiesen: es kennt keine Prüfsummen</translation>
-    </message>
-    <message>
-        <source>vehicle&apos;s log: {0}, {1}</source>
-        <translation>Log des Fahrzeugs: {0}, {1}</translation>
-    </message>
-    <message>
-        <source>The report is made from the vehicle&apos;s own log.</source>
-        <translation>Der Bericht ist aus dem eigenen Log des Fahrzeugs.</translation>
-    </message>
-    <message>
         <source>Report</source>
         <translation>Bericht</translation>
-    </message>
-    <message>
-        <source>Aircraft {0}: {1}</source>
-        <translation>Fluggerät {0}: {1}</translation>
     </message>
 </context>
 <context>
@@ -2229,10 +2160,6 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Weitere Einstellungen</translation>
     </message>
     <message>
-        <source>Without</source>
-        <translation>Ohne</translation>
-    </message>
-    <message>
         <source>GeoTIFF of GHS-POP, WorldPop or others: people below the buffer, beside what you state</source>
         <translation>GeoTIFF von GHS-POP, WorldPop oder anderen: Menschen unter dem Puffer, neben Ihrer Angabe</translation>
     </message>
@@ -2245,6 +2172,54 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Bevölkerungsraster (*.tif *.tiff);;Alle Dateien (*)</translation>
     </message>
     <message>
+        <source>Ground from a raster ...</source>
+        <translation>Boden aus einem Raster ...</translation>
+    </message>
+    <message>
+        <source>Heights of the ground</source>
+        <translation>Höhen des Bodens</translation>
+    </message>
+    <message>
+        <source>Heights ({0});;All files (*)</source>
+        <translation>Höhen ({0});;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>GeoTIFF of the ground&apos;s heights, for this assessment in place of the site&apos;s own terrain</source>
+        <translation>GeoTIFF der Bodenhöhen, für diese Bewertung anstelle des Geländes des Standorts</translation>
+    </message>
+    <message>
+        <source>not stated</source>
+        <translation>nicht angegeben</translation>
+    </message>
+    <message>
+        <source>controlled: nobody</source>
+        <translation>kontrolliert: niemand</translation>
+    </message>
+    <message>
+        <source>remote: under 5 per km²</source>
+        <translation>abgelegen: unter 5 je km²</translation>
+    </message>
+    <message>
+        <source>lightly: under 50 per km²</source>
+        <translation>dünn: unter 50 je km²</translation>
+    </message>
+    <message>
+        <source>sparsely: under 500 per km²</source>
+        <translation>spärlich: unter 500 je km²</translation>
+    </message>
+    <message>
+        <source>suburban: under 5000 per km²</source>
+        <translation>Vorort: unter 5000 je km²</translation>
+    </message>
+    <message>
+        <source>city: under 50000 per km²</source>
+        <translation>Stadt: unter 50000 je km²</translation>
+    </message>
+    <message>
+        <source>assembly: more</source>
+        <translation>Menschenmenge: mehr</translation>
+    </message>
+    <message>
         <source>Population raster</source>
         <translation>Bevölkerungsraster</translation>
     </message>
@@ -2254,6 +2229,13 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>Click a panel to see from where it is photographed.</source>
         <translation>Eine Scheibe anklicken, um zu sehen, von wo sie fotografiert wird.</translation>
+    </message>
+</context>
+<context>
+    <name>HoldButton</name>
+    <message>
+        <source>Keep it pressed until the bar is full</source>
+        <translation>Gedrückt halten, bis der Balken voll ist</translation>
     </message>
 </context>
 <context>
@@ -7653,6 +7635,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Ein Ordner mit Splats und Scheiben in Kacheln, auf der Erde verortet, wie CesiumJS sie zeigt.</translation>
     </message>
     <message>
+        <source>Aircraft {0} has sortie {1} already: choose another sortie.</source>
+        <translation>Fluggerät {0} hat Einsatz {1} schon: wählen Sie einen anderen Einsatz.</translation>
+    </message>
+    <message>
+        <source>Aircraft {0} is connected at that address: give this one an address of its own.</source>
+        <translation>Fluggerät {0} ist unter dieser Adresse verbunden: geben Sie diesem eine eigene Adresse.</translation>
+    </message>
+    <message>
+        <source>Aircraft {0}: {1}</source>
+        <translation>Fluggerät {0}: {1}</translation>
+    </message>
+    <message>
         <source>ArduPilot, dataflash log</source>
         <translation>ArduPilot, Dataflash-Log</translation>
     </message>
@@ -7715,6 +7709,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>Hemisphere section</source>
         <translation>Sektor der Halbkugel</translation>
+    </message>
+    <message>
+        <source>Home is where the aircraft stands: plan again, then connect anew.</source>
+        <translation>Der Startplatz ist jetzt, wo das Fluggerät steht: neu planen, dann neu verbinden.</translation>
     </message>
     <message>
         <source>ISO automatic</source>
@@ -7843,6 +7841,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>The panels alone, as windows of the building, with their attributes.</source>
         <translation>Nur die Scheiben, als Fenster des Gebäudes, mit ihren Merkmalen.</translation>
+    </message>
+    <message>
+        <source>The report is made from the vehicle&apos;s own log.</source>
+        <translation>Der Bericht ist aus dem eigenen Log des Fahrzeugs.</translation>
     </message>
     <message>
         <source>To Fly</source>
@@ -8077,6 +8079,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>alle Fotos entstehen im Schweben, also verzerrt der elektronische Verschluss keines</translation>
     </message>
     <message>
+        <source>all photos that were looked at show the same points</source>
+        <translation>alle angesehenen Fotos zeigen dieselben Punkte</translation>
+    </message>
+    <message>
         <source>ambiguous option: %(option)s could match %(matches)s</source>
         <translation>mehrdeutige Option: %(option)s kann %(matches)s sein</translation>
     </message>
@@ -8169,6 +8175,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>automatischer Weißabgleich</translation>
     </message>
     <message>
+        <source>autopilot: {0}</source>
+        <translation>Autopilot: {0}</translation>
+    </message>
+    <message>
         <source>begin with a building model, photos of a first flight, or a mission of another program</source>
         <translation>mit einem Gebäudemodell, Fotos eines ersten Flugs oder der Mission eines anderen Programms beginnen</translation>
     </message>
@@ -8219,6 +8229,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>by the grid &apos;{0}&apos; in steps of {1} minutes: here {2} m above the ellipsoid, {3} m from EGM96</source>
         <translation>nach dem Gitter &apos;{0}&apos; in Schritten von {1} Minuten: hier {2} m über dem Ellipsoid, {3} m gegen EGM96</translation>
+    </message>
+    <message>
+        <source>by the heights in the photos the ground is {0} m below sea level: unless it is, they are off by that, and the height of the site with them; its sizes are not. Survey control points before missions with absolute heights</source>
+        <translation>nach den Höhen in den Fotos liegt der Boden {0} m unter dem Meeresspiegel: Wenn das nicht so ist, sind sie um so viel falsch, und die Höhe des Standorts mit ihnen; seine Größen sind es nicht. Vermessen Sie Passpunkte vor Missionen mit absoluten Höhen</translation>
     </message>
     <message>
         <source>byte {0} says that {1} entries follow, but the {2} bytes left hold at most {3}; the file is damaged or cut off: write it again</source>
@@ -8341,6 +8355,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>verbunden</translation>
     </message>
     <message>
+        <source>connecting</source>
+        <translation>Verbindung wird aufgebaut</translation>
+    </message>
+    <message>
         <source>continue mission, and land at home</source>
         <translation>Mission fortsetzen, und am Startplatz landen</translation>
     </message>
@@ -8423,6 +8441,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>device: &apos;gpu&apos; is asked for, and {0}; leave it out</source>
         <translation>device: „gpu“ ist verlangt, und {0}; lassen Sie es weg</translation>
+    </message>
+    <message>
+        <source>disconnected</source>
+        <translation>getrennt</translation>
     </message>
     <message>
         <source>distance</source>
@@ -9077,6 +9099,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected {0}, found an archive; unpack it first</source>
         <translation>erwartet wird {0}, gefunden wurde ein Archiv; zuerst entpacken</translation>
+    </message>
+    <message>
+        <source>expected {0}, found an empty file; copy it again</source>
+        <translation>erwartet wurde {0}, gefunden eine leere Datei; kopieren Sie sie noch einmal</translation>
     </message>
     <message>
         <source>expected {0}, found something else</source>
@@ -10031,6 +10057,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Schlüssel gespeichert; einem Fluggerät mit &apos;signing give URL&apos; geben, über ein Kabel</translation>
     </message>
     <message>
+        <source>landed</source>
+        <translation>gelandet</translation>
+    </message>
+    <message>
+        <source>landed; select it for its report</source>
+        <translation>gelandet; wählen Sie es aus, um seinen Bericht zu sehen</translation>
+    </message>
+    <message>
         <source>largest dimension</source>
         <translation>größte Abmessung</translation>
     </message>
@@ -10089,6 +10123,22 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>line {0}: expected &apos;X Y Z column row photo name&apos;, found &apos;{1}&apos;</source>
         <translation>Zeile {0}: erwartet &apos;X Y Z column row photo name&apos;, gefunden &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>link alive</source>
+        <translation>Verbindung steht</translation>
+    </message>
+    <message>
+        <source>link found again</source>
+        <translation>Verbindung wieder da</translation>
+    </message>
+    <message>
+        <source>link lost</source>
+        <translation>Verbindung verloren</translation>
+    </message>
+    <message>
+        <source>link lost: {0}</source>
+        <translation>Verbindung verloren: {0}</translation>
     </message>
     <message>
         <source>listing logs</source>
@@ -10311,6 +10361,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>braucht den Ordner seiner annotierten Fotos; mit --data nennen</translation>
     </message>
     <message>
+        <source>nested too deeply: lists in lists without end; copy it again or make it anew</source>
+        <translation>zu tief verschachtelt: Listen in Listen ohne Ende; kopieren Sie die Datei noch einmal oder erzeugen Sie sie neu</translation>
+    </message>
+    <message>
         <source>network for panes</source>
         <translation>neuronales Netz für Scheiben</translation>
     </message>
@@ -10341,6 +10395,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>no aperture is stated, so all is in focus</source>
         <translation>keine Blende ist angegeben, also ist alles scharf</translation>
+    </message>
+    <message>
+        <source>no building element in this file has geometry; export the building again, with the bodies of its walls and windows</source>
+        <translation>kein Bauteil in dieser Datei hat eine Form; exportieren Sie das Gebäude noch einmal, mit den Körpern seiner Wände und Fenster</translation>
     </message>
     <message>
         <source>no building in this file has windows; {0}</source>
@@ -10565,6 +10623,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>not kept out of</source>
         <translation>wird nicht gemieden</translation>
+    </message>
+    <message>
+        <source>not proved: it knows no checksums</source>
+        <translation>nicht bewiesen: es kennt keine Prüfsummen</translation>
     </message>
     <message>
         <source>not readable</source>
@@ -10867,6 +10929,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Fotos passen besser zum Modell, wenn alles in ihnen um {0} px verschoben ist</translation>
     </message>
     <message>
+        <source>photos of something else</source>
+        <translation>Fotos von etwas anderem</translation>
+    </message>
+    <message>
         <source>photos of {0}</source>
         <translation>Fotos von {0}</translation>
     </message>
@@ -10881,6 +10947,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>photos: {0} of {1} views</source>
         <translation>Fotos: {0} von {1} Aufnahmen</translation>
+    </message>
+    <message>
+        <source>pictures of a model of its photos from new places, expected PSNR: {0}</source>
+        <translation>Bilder eines Modells aus seinen Fotos von neuen Orten, erwartetes PSNR: {0}</translation>
     </message>
     <message>
         <source>pictures of models drawn by the graphics card</source>
@@ -10977,6 +11047,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>proved by an independent check: all {0} claims on this plan</source>
         <translation>durch eine unabhängige Prüfung bewiesen: alle {0} Aussagen über diesen Plan</translation>
+    </message>
+    <message>
+        <source>proved by its checksum</source>
+        <translation>durch seine Prüfsumme bewiesen</translation>
     </message>
     <message>
         <source>px of parallax</source>
@@ -11097,6 +11171,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>rest of sortie {0} from {1} on, {2}, {3} m, {4} min</source>
         <translation>Rest von Einsatz {0} ab {1}, {2}, {3} m, {4} min</translation>
+    </message>
+    <message>
+        <source>returns once the others have landed</source>
+        <translation>kehrt zurück, sobald die anderen gelandet sind</translation>
     </message>
     <message>
         <source>rolling shutter</source>
@@ -11227,6 +11305,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Anteil am Fehler</translation>
     </message>
     <message>
+        <source>share of the photos</source>
+        <translation>Anteil der Fotos</translation>
+    </message>
+    <message>
         <source>share of the pixels</source>
         <translation>Anteil der Pixel</translation>
     </message>
@@ -11241,6 +11323,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>shutter time {0}</source>
         <translation>Verschlusszeit {0}</translation>
+    </message>
+    <message>
+        <source>simulated battery: {0} %, as the flight before left it</source>
+        <translation>simulierter Akku: {0} %, wie der Flug davor ihn ließ</translation>
     </message>
     <message>
         <source>simulated fly-aways: {0} of {1} ended inside; smallest distance to the border {2} m</source>
@@ -11571,6 +11657,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Kamera nimmt dies nicht an, von Hand einstellen: {0}</translation>
     </message>
     <message>
+        <source>the camera is asked for its own definition: {0}</source>
+        <translation>die Kamera wird nach ihrer eigenen Definition gefragt: {0}</translation>
+    </message>
+    <message>
         <source>the camera is set, and read back: {0}</source>
         <translation>die Kamera ist eingestellt und zurückgelesen: {0}</translation>
     </message>
@@ -11791,6 +11881,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Objektiv verschiebt Pixel um bis zu {0} px</translation>
     </message>
     <message>
+        <source>the lens that the photos state does not fit their positions, which the model then misses by {0} m: it was found with the model, which meets them to {1} m</source>
+        <translation>das Objektiv, das die Fotos angeben, passt nicht zu ihren Positionen, die das Modell damit um {0} m verfehlt: Es wurde mit dem Modell gefunden, das sie auf {1} m trifft</translation>
+    </message>
+    <message>
         <source>the licence is missing; enter the words that the map&apos;s owner asks for, such as © OpenStreetMap contributors</source>
         <translation>die Lizenz fehlt; die Worte eingeben, die der Besitzer der Karte verlangt, etwa © OpenStreetMap-Mitwirkende</translation>
     </message>
@@ -11909,6 +12003,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the model misses the control points by {0} m in the median; a receiver without corrections measures them no better, else look at their coordinates, the order of east and north, and their pixels</source>
         <translation>das Modell verfehlt die Passpunkte im Median um {0} m; ein Empfänger ohne Korrekturen misst sie nicht besser, sonst sehen Sie Koordinaten, Reihenfolge von Ost und Nord und Pixel nach</translation>
+    </message>
+    <message>
+        <source>the model misses the photos&apos; positions by {0} m in the middle, {1} times what these state: the lens, the time of exposure or the mount of the antenna is off, or RTK was not fixed; check a known length</source>
+        <translation>das Modell verfehlt die Positionen der Fotos im Mittel um {0} m, {1}-mal so viel, wie diese angeben: Das Objektiv, die Zeit der Belichtung oder der Ort der Antenne stimmt nicht, oder RTK war nicht fixiert; prüfen Sie eine bekannte Länge</translation>
     </message>
     <message>
         <source>the model that a flight brings, on unseen views of &apos;{0}&apos;</source>
@@ -12255,6 +12353,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Übertragung kommt nicht voran; ein Fahrzeug, das immer wieder neu startet, oder eine schlechte Verbindung</translation>
     </message>
     <message>
+        <source>the vehicle is not in flight, so it cannot land</source>
+        <translation>das Fluggerät ist nicht im Flug, kann also nicht landen</translation>
+    </message>
+    <message>
+        <source>the vehicle is not in flight, so it cannot return</source>
+        <translation>das Fluggerät ist nicht im Flug, kann also nicht zurückkehren</translation>
+    </message>
+    <message>
         <source>the vehicle no longer answers</source>
         <translation>das Fahrzeug antwortet nicht mehr</translation>
     </message>
@@ -12437,10 +12543,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>unseen views</source>
         <translation>ungesehene</translation>
-    </message>
-    <message>
-        <source>unseen views of a model of its photos, expected: {0}</source>
-        <translation>ungesehene Ansichten eines Modells aus seinen Fotos, erwartet: {0}</translation>
     </message>
     <message>
         <source>unseen views of a model of the photos, expected: {0} dB</source>
@@ -12719,6 +12821,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} Wegpunkte in einer Route; Fernsteuerungen mit DJI Fly versagen über {1}</translation>
     </message>
     <message>
+        <source>{0} without Gaussians of their own ({1}): no photo showed them, or the method knows no panels</source>
+        <translation>{0} ohne eigene Gauß-Splats ({1}): kein Foto zeigte sie, oder das Verfahren kennt keine Scheiben</translation>
+    </message>
+    <message>
         <source>{0} workers ended while they rendered it, perhaps for want of memory</source>
         <translation>{0} Worker endeten beim Rendern, vielleicht aus Mangel an Speicher</translation>
     </message>
@@ -12753,10 +12859,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0}; and {1} more</source>
         <translation>{0}; und {1} weitere</translation>
-    </message>
-    <message>
-        <source>{0}; another battery would bring {1} dB more</source>
-        <translation>{0}; ein weiterer Akku brächte {1} dB mehr</translation>
     </message>
     <message>
         <source>{0}; export it again</source>
@@ -13445,6 +13547,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>nothing says how large the model is: the photos have no positions, and nothing was found below them; measure how far apart two photos were taken, or survey control points, and state it</source>
         <translation>nichts sagt, wie groß das Modell ist: die Fotos haben keine Positionen, und unter ihnen wurde nichts gefunden; messen Sie, wie weit zwei Fotos auseinander aufgenommen wurden, oder Passpunkte, und geben Sie es an</translation>
+    </message>
+    <message>
+        <source>{0}; another battery would bring {1} dB more, {2} % less error</source>
+        <translation>{0}; ein weiterer Akku brächte {1} dB mehr, {2} % weniger Fehler</translation>
     </message>
     <message>
         <source>{0}; no top-up is needed, and none was written</source>
@@ -15207,6 +15313,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Fluggerät {0} wurde angewiesen, nicht mehr zu signieren</translation>
     </message>
     <message>
+        <source>vehicle&apos;s log: {0}, {1}</source>
+        <translation>Log des Fahrzeugs: {0}, {1}</translation>
+    </message>
+    <message>
         <source>views are planned or square to the facades; give one number, not both</source>
         <translation>Aufnahmen sind geplant oder rechtwinklig zu den Fassaden; eine Zahl angeben, nicht beide</translation>
     </message>
@@ -15285,6 +15395,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>where the ground is not known, the surface counts as ground</source>
         <translation>wo der Boden nicht bekannt ist, zählt die Oberfläche als Boden</translation>
+    </message>
+    <message>
+        <source>where {0} of {1} photos were taken, the others saw something else: {2}</source>
+        <translation>wo {0} von {1} Fotos aufgenommen wurden, sahen die übrigen etwas anderes: {2}</translation>
     </message>
     <message>
         <source>white balance automatic</source>
@@ -15743,10 +15857,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} with the GlobalId of the building model</source>
         <translation>{0} mit der GlobalId des Gebäudemodells</translation>
-    </message>
-    <message>
-        <source>{0} without Gaussians of their own: no photo showed them, or the method knows no panels</source>
-        <translation>{0} ohne eigene Gauß-Splats: kein Foto zeigte sie, oder das Verfahren kennt keine Scheiben</translation>
     </message>
     <message>
         <source>{0} x {1} pixels, but its photo has {2} x {3}</source>
@@ -16813,10 +16923,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>kein gültiges JSON, Zeile {0}, Spalte {1}: {2}</translation>
     </message>
     <message>
-        <source>nested too deeply for a file of ours</source>
-        <translation>zu tief verschachtelt für eine unserer Dateien</translation>
-    </message>
-    <message>
         <source>holds a number with too many digits ({0})</source>
         <translation>enthält eine Zahl mit zu vielen Stellen ({0})</translation>
     </message>
@@ -17363,10 +17469,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>--deflection {0}: expected a positive length in metres</source>
         <translation>--deflection {0}: erwartet wurde eine positive Länge in Metern</translation>
-    </message>
-    <message>
-        <source>no building element in this file has geometry</source>
-        <translation>kein Bauteil in dieser Datei hat Geometrie</translation>
     </message>
     <message>
         <source>expected an IFC file (STEP text that begins with ISO-10303-21)</source>
@@ -18895,14 +18997,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the vehicle is not in flight, so there is nothing to resume</source>
         <translation>das Fluggerät ist nicht im Flug, es gibt nichts fortzusetzen</translation>
-    </message>
-    <message>
-        <source>no vehicle was heard yet, so none can return</source>
-        <translation>noch kein Fluggerät gehört, keines kann heimkehren</translation>
-    </message>
-    <message>
-        <source>no vehicle was heard yet, so none can land</source>
-        <translation>noch kein Fluggerät gehört, keines kann landen</translation>
     </message>
     <message>
         <source>there is no link</source>
@@ -21300,6 +21394,26 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Video</translation>
     </message>
     <message>
+        <source>From the camera</source>
+        <translation>Von der Kamera</translation>
+    </message>
+    <message>
+        <source>Camera definition file</source>
+        <translation>Definitionsdatei der Kamera</translation>
+    </message>
+    <message>
+        <source>Camera definitions (*.xml *.xz);;All files (*)</source>
+        <translation>Kameradefinitionen (*.xml *.xz);;Alle Dateien (*)</translation>
+    </message>
+    <message>
+        <source>Definition file of a MAVLink camera: from the next upload on, it is set by the names and options in it; without one, the camera is asked for its own</source>
+        <translation>Definitionsdatei einer MAVLink-Kamera: Ab dem nächsten Hochladen wird sie mit deren Namen und Werten eingestellt; ohne eine wird die Kamera nach ihrer eigenen gefragt</translation>
+    </message>
+    <message>
+        <source>Camera definition</source>
+        <translation>Kameradefinition</translation>
+    </message>
+    <message>
         <source>Start waits for RTK, and a warning comes when it is lost in flight.</source>
         <translation>Der Start wartet auf RTK, und geht es im Flug verloren, kommt eine Warnung.</translation>
     </message>
@@ -21314,6 +21428,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>The vehicle&apos;s camera offers {0}</source>
         <translation>Die Kamera des Fahrzeugs bietet {0}</translation>
+    </message>
+    <message>
+        <source>{0}: parameters that can be set: {1}</source>
+        <translation>{0}: einstellbare Parameter: {1}</translation>
     </message>
     <message>
         <source>Operator number: its checksum is right.</source>
@@ -22284,8 +22402,8 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Der nächste Tag</translation>
     </message>
     <message>
-        <source>Light and take-off times stand here, once there is a site.</source>
-        <translation>Licht und Startzeiten stehen hier, sobald es einen Standort gibt.</translation>
+        <source>Light and take-off times stand here, once they are found for a site.</source>
+        <translation>Licht und Startzeiten stehen hier, sobald sie für einen Standort gefunden sind.</translation>
     </message>
     <message>
         <source>Check the plan for a take-off then, on the Mission tab</source>
