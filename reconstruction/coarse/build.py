@@ -285,7 +285,7 @@ def build_coarse(
     left_out = tuple(name for name in taken.names if name not in {photo.name for photo in posed})
     known = taken.origin is not None or stated.origin is not None or bool(stated.control)
     findings = (*taken.findings, *lately, *placed.findings, *_left_out(left_out, len(taken.names)))
-    findings += (*_about_ground(buildings), *_about_walls(buildings, forwards), *_about_place(known))
+    findings += (*_about_ground(buildings), *about_walls(buildings, forwards), *_about_place(known))
     findings += about_height(origin) if _says_height(taken.metadata) else ()
     n = len(taken.names)
     return CoarseModel(
@@ -921,17 +921,29 @@ def _about_ground(buildings: Buildings) -> list[Finding]:
 STRAIGHT_DOWN = math.sin(math.radians(65.0))
 
 
-def _about_walls(buildings: Buildings, forwards: Array) -> list[Finding]:
+MOSTLY_GUESSED = 0.5
+"""Share of walls from which on photos that look straight down are told to be why."""
+
+
+def about_walls(buildings: Buildings, forwards: Array) -> list[Finding]:
+    """What is said of walls that were not seen.
+
+    Parameters
+    ----------
+    forwards
+        Of the cameras, ENU, shape (n, 3).
+    """
     found = [Finding(Severity.WARNING, "walls-missing", note) for note in buildings.notes]
-    if not buildings.walls and float(np.median(-forwards[:, 2])) > STRAIGHT_DOWN:
+    guessed = [face for face in buildings.faces if face.wall is None]
+    share = sum(face.area_m2 for face in guessed) / max(1e-9, sum(face.area_m2 for face in buildings.faces))
+    is_bare = not buildings.walls or share > MOSTLY_GUESSED
+    if is_bare and float(np.median(-forwards[:, 2])) > STRAIGHT_DOWN:
         text = say(
             "the photos look straight down, where walls do not show: fly around the building too, with the camera 20 "
             "to 45 degrees below the horizon"
         )
         found = [Finding(Severity.WARNING, "looks-down", text)]
-    guessed = [face for face in buildings.faces if face.wall is None]
     if guessed:
-        share = sum(face.area_m2 for face in guessed) / max(1e-9, sum(face.area_m2 for face in buildings.faces))
         text = say(
             "{} of {} sides of the building were not seen and are guessed, {:.0f} % of its walls; fly around it before "
             "you plan flights there",

@@ -9,7 +9,9 @@ import pytest
 
 from planning.geo.mesh import closed_parts
 from planning.geo.ray_casting import RayCaster
-from reconstruction.coarse.buildings import make_buildings, moved, prism
+from reconstruction.base.cameras import cam_from_enu
+from reconstruction.coarse.build import about_walls
+from reconstruction.coarse.buildings import Face, make_buildings, moved, prism
 from reconstruction.coarse.cloud import in_ring
 from reconstruction.coarse.walls import BuildingParameters, find_ground
 from tests.reconstruction.coarse.synthetic_clouds import LOW, TALL, cameras, made_cloud
@@ -174,3 +176,19 @@ def test_a_prism_with_a_court_is_closed():
     hits = RayCaster(mesh).cast(np.array([[5.0, 5.0, 50.0], [9.0, 5.0, 50.0]]), np.array([[0.0, 0.0, -1.0]] * 2))
     assert not np.isfinite(hits.distance_m[0])
     assert float(hits.distance_m[1]) == pytest.approx(50.0 - 5.9)
+
+
+@pytest.mark.parametrize(
+    ("pitch_deg", "walls", "codes"),
+    [
+        (-90.0, (0, None, None), ["looks-down", "walls-guessed"]),
+        (-90.0, (0, 0, None), ["walls-guessed"]),
+        (-30.0, (0, None, None), ["walls-guessed"]),
+        (-90.0, (0, 0, 0), []),
+    ],
+)
+def test_a_flight_that_looks_straight_down_is_told_why_its_walls_are_guessed(plain, pitch_deg, walls, codes):
+    faces = tuple(Face(((0.0, 0.0), (5.0, 0.0)), 0.0, 4.0, 0.0 if wall is None else 1.0, wall) for wall in walls)
+    buildings = replace(plain, faces=faces, notes=())
+    forward = cam_from_enu(0.0, pitch_deg)[2]
+    assert [finding.code for finding in about_walls(buildings, np.array([forward] * 3))] == codes
