@@ -83,6 +83,7 @@ from reconstruction.colmap.pycolmap_run import (
     as_model,
     do_not_fit,
     load_colmap,
+    look_one_way,
     transform,
 )
 from reconstruction.colmap.receivers import Receiver, placed_by_receivers
@@ -926,7 +927,7 @@ MOSTLY_GUESSED = 0.5
 
 
 def about_walls(buildings: Buildings, forwards: Array) -> list[Finding]:
-    """What is said of walls that were not seen.
+    """What is said of walls that were not seen, and of heights.
 
     Parameters
     ----------
@@ -934,15 +935,22 @@ def about_walls(buildings: Buildings, forwards: Array) -> list[Finding]:
         Of the cameras, ENU, shape (n, 3).
     """
     found = [Finding(Severity.WARNING, "walls-missing", note) for note in buildings.notes]
+    looks_down = float(np.median(-forwards[:, 2])) > STRAIGHT_DOWN
     guessed = [face for face in buildings.faces if face.wall is None]
     share = sum(face.area_m2 for face in guessed) / max(1e-9, sum(face.area_m2 for face in buildings.faces))
     is_bare = not buildings.walls or share > MOSTLY_GUESSED
-    if is_bare and float(np.median(-forwards[:, 2])) > STRAIGHT_DOWN:
+    if is_bare and looks_down:
         text = say(
             "the photos look straight down, where walls do not show: fly around the building too, with the camera 20 "
             "to 45 degrees below the horizon"
         )
         found = [Finding(Severity.WARNING, "looks-down", text)]
+    if looks_down and look_one_way(forwards):
+        text = say(
+            "all photos look straight down: heights of ground and roofs are as good as their focal length only; photos "
+            "that look to the side too, or control points, say them"
+        )
+        found.append(Finding(Severity.NOTE, "heights-by-lens", text))
     if guessed:
         text = say(
             "{} of {} sides of the building were not seen and are guessed, {:.0f} % of its walls; fly around it before "

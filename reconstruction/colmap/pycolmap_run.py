@@ -377,9 +377,7 @@ class ColmapRun:
             camera.model = self.colmap.CameraModelId.OPENCV
             camera.params = [0.5 * (fx + fy), 0.5 * (fx + fy), *others]
         forwards = np.array([found.image(one).cam_from_world().rotation.matrix()[2] for one in found.reg_image_ids()])
-        mean = forwards.mean(axis=0) / np.linalg.norm(forwards.mean(axis=0))
-        apart = float(np.median(np.arccos(np.clip(forwards @ mean, -1.0, 1.0))))
-        self.adjust(found, set(), finds_centres=True, finds_focal_lengths=apart > LEAST_APART_RAD)
+        self.adjust(found, set(), finds_centres=True, finds_focal_lengths=not look_one_way(forwards))
         return found
 
     def adjust(
@@ -450,6 +448,13 @@ class ColmapRun:
         if problem:
             raise ReconstructionError(say("COLMAP stopped while {}: {}", stage, problem[0])) from problem[0]
         return result[0]
+
+
+def look_one_way(forwards: Array) -> bool:
+    """Whether most cameras look the same way, by where they look, shape (n, 3)."""
+    mean = forwards.mean(axis=0)
+    cosines = forwards @ mean / max(float(np.linalg.norm(mean)), 1e-9)
+    return float(np.median(np.arccos(np.clip(cosines, -1.0, 1.0)))) <= LEAST_APART_RAD
 
 
 def keep_largest(path: Path, n_most: int) -> None:

@@ -181,10 +181,11 @@ def test_a_prism_with_a_court_is_closed():
 @pytest.mark.parametrize(
     ("pitch_deg", "walls", "codes"),
     [
-        (-90.0, (0, None, None), ["looks-down", "walls-guessed"]),
-        (-90.0, (0, 0, None), ["walls-guessed"]),
+        (-90.0, (0, None, None), ["looks-down", "heights-by-lens", "walls-guessed"]),
+        (-90.0, (0, 0, None), ["heights-by-lens", "walls-guessed"]),
         (-30.0, (0, None, None), ["walls-guessed"]),
-        (-90.0, (0, 0, 0), []),
+        (-90.0, (0, 0, 0), ["heights-by-lens"]),
+        (-30.0, (0, 0, 0), []),
     ],
 )
 def test_a_flight_that_looks_straight_down_is_told_why_its_walls_are_guessed(plain, pitch_deg, walls, codes):
