@@ -368,6 +368,52 @@ def _of_missions(probe: Probe) -> Iterator[Any]:
         yield probe.said(lambda m=mission: module.flies(case, m))
 
 
+def _of_level_ground(probe: Probe) -> Iterator[Any]:
+    """What counts as the ground where the proof says that the terrain is level, and how level it must be."""
+    import base64
+    import struct
+    import zlib
+
+    heights = [(-300, 0, 200, 450)[k % 4] for k in range(144)]
+    text = base64.b64encode(zlib.compress(struct.pack("<144i", *heights))).decode()
+    grid = {"west_south_m": [-29.0, -29.0], "step_m": 5.0, "columns": 12, "rows": 12, "accuracy_m": 0.01}
+
+    def case(within: float | None, ground_z_m: float = 0.0, use: str = "auto", west_m: float = -29.0) -> Any:
+        """A case whose airspace, paths and boxes are above that terrain."""
+        site, proof = copy.deepcopy(probe.site), {**probe.proof, "level_within_m": within}
+        site["airspace"]["ground_z_m"] = ground_z_m
+        site["terrain"] = {**grid, "upper": text, "use": use, "west_south_m": [west_m, -29.0]}
+        return probe.case(site=site, proof=proof)
+
+    for use in ("auto", "on", "off"):
+        for within in (None, 0.3, 0.5, 0.6):
+            yield probe.said(lambda u=use, w=within: (case(w, use=u).terrain is None, case(w, use=u).low))
+            yield probe.said(lambda u=use, w=within: (case(w, use=u).ground, case(w, use=u).airspace()))
+    for low, high in ((0.0, 0.505), (0.505, 0.6)):
+        yield border(lambda w: probe.said(lambda: case(w).terrain is None), low, high)
+    for far in (-1.0, 1.0):
+        yield border(lambda z: probe.said(lambda: case(0.5, ground_z_m=z).terrain is None), 0.0, far)
+    yield border(lambda west: probe.said(lambda: case(0.5, west_m=west).terrain is None), -29.0, 0.0)
+    above, level = case(None), case(0.5)
+
+    def kept(height: float) -> object:
+        above.height_m = height
+        return probe.said(above.airspace)
+
+    yield border(kept, 4.0, 9.0)
+    above.height_m, ceiling = level.height_m, max(p[2] for path in above.paths for p in path)
+    above.high = (*above.high[:2], ceiling)
+    yield probe.said(above.airspace)
+    for each in (above, level):
+        each.low, each.high = (-20.0, -20.0, 3.0), (18.0, 16.0, 25.0)
+
+        def excluded(top: float, of: Any = each) -> object:
+            of.high = (*of.high[:2], top)
+            return probe.said(lambda: of._exclude(0, "t"))
+
+        yield border(excluded, 3.1, 9.0)
+
+
 def _of_terrain(probe: Probe) -> Iterator[Any]:
     """Heights above a rough ground."""
     import base64
@@ -534,6 +580,7 @@ def _of_numbers(probe: Probe) -> Iterator[Any]:
 
 SECTIONS: tuple[Callable[[Probe], Iterator[Any]], ...] = (
     _of_terrain,
+    _of_level_ground,
     _of_paths,
     _of_limits,
     _of_batteries,

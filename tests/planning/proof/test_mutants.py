@@ -42,6 +42,7 @@ EQUIVALENT: tuple[tuple[str, str, str], ...] = (
     ('"max_jerk_m_s3": 1e30', "1e+30 ->", "no limit"),
     ("100_000_000", "100000000 ->", "a text that is longer than any mission"),
     ("16_000_000", "16000000 ->", "more nodes than a terrain may have"),
+    ("-1e6 < spare", "1000000.0 ->", "ground so far above a flight is ground that is not known"),
 )
 """Mutants that say the same of everything: a part of their line, the start of their change, and why."""
 
