@@ -520,7 +520,8 @@ class PlanParameters:
     )
     least_gain_db: float | None = parameter(
         None,
-        "as many batteries as are worth it: until another would bring unseen views less than so many dB more",
+        "as many batteries as are worth it: until another would make pictures from new places less than so many dB "
+        "better; 0.5 dB are 6 % less error",
         label="Worth another battery",
         name="good enough",
         unit="dB",

@@ -19,7 +19,8 @@ TEXTS = (
     QT_TRANSLATE_NOOP("Parameters", "Worth another battery"),
     QT_TRANSLATE_NOOP(
         "Parameters",
-        "as many batteries as are worth it: until another would bring unseen views less than so many dB more",
+        "as many batteries as are worth it: until another would make pictures from new places less than so many dB "
+        "better; 0.5 dB are 6 % less error",
     ),
     QT_TRANSLATE_NOOP("Parameters", "Aircraft"),
     QT_TRANSLATE_NOOP("Parameters", "aircraft and camera, or a .toml file with your own"),
