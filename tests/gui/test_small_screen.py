@@ -208,10 +208,13 @@ class ViewPictures:
         self.application, self.controller, self.found = application, controller, {}
 
     def at(self, state, window=None):
-        turn_until_idle(self.application, self.controller)
         window = self.controller.window if window is None else window
         checks = (out_of_reach, cut_short, cut_choices, squeezed, sideways, cut_labels, hidden_titles)
-        problems = [problem for check in checks for problem in check(window)]
+        problems = ["not looked yet"]
+        # Layouts of areas within areas take some turns, and a busy machine comes to them late.
+        for _ in range(3):
+            turn_until_idle(self.application, self.controller)
+            problems = problems and [problem for check in checks for problem in check(window)]
         if window.width() > SCREEN.width() or window.height() > SCREEN.height():
             problems.append(f"the window is {window.width()} x {window.height()}")
         if problems:

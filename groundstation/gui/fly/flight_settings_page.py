@@ -72,7 +72,7 @@ class SettingsPage(QWidget):
         self.video.setToolTip(self.tr("The camera's stream, by RTSP, or as an MPEG transport stream by UDP"))
         form.addRow(self.tr("Video"), self.video)
         self.definition = FileBox(
-            self.tr("From the camera"),
+            self.tr("Choose file ..."),
             self.tr("Camera definition file"),
             self.tr("Camera definitions (*.xml *.xz);;All files (*)"),
         )

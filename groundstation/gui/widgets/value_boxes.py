@@ -6,7 +6,17 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from PySide6.QtCore import QCoreApplication, Qt, Signal
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QLineEdit, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QPushButton,
+    QSizePolicy,
+    QStyleOptionButton,
+    QVBoxLayout,
+    QWidget,
+)
 
 from groundstation.gui.widgets.inputs import LengthBox
 from groundstation.gui.widgets.questions import choose_file
@@ -19,8 +29,8 @@ DECIMALS = 2
 """Coordinates are shown to 1 cm, or a hundredth of a foot."""
 
 
-FILE_NAME_PX = 200
-"""Of the name of a file on its button."""
+LEAST_NAME_PX, BUTTON_EDGES_PX = 90, 20
+"""Of the name of a file on its button, and what stands beside it there."""
 
 
 class ErrorLine(QLabel):
@@ -71,6 +81,16 @@ class NameBox(QLineEdit):
             self.valueChanged.emit(self._value)
 
 
+class _NameButton(QPushButton):
+    """Shows as much of a name as it has room for: its beginning and its end."""
+
+    def initStyleOption(self, option: QStyleOptionButton) -> None:  # noqa: N802
+        """Leave the middle out."""
+        super().initStyleOption(option)
+        room = self.width() - BUTTON_EDGES_PX
+        option.text = self.fontMetrics().elidedText(self.text(), Qt.TextElideMode.ElideMiddle, room)
+
+
 class FileBox(QWidget):
     """Edits a file that may be named: a button with its name, and one that takes it away.
 
@@ -88,7 +108,7 @@ class FileBox(QWidget):
         super().__init__(parent)
         self._text, self._title, self._kinds = text, title, kinds
         self._value: Path | None = None
-        self.choose, self.without = QPushButton(), QPushButton(self.tr("Without"))
+        self.choose, self.without = _NameButton(), QPushButton(self.tr("Without"))
         layout = QHBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.choose, 1)
@@ -104,10 +124,12 @@ class FileBox(QWidget):
     def setValue(self, path: Path | None) -> None:  # noqa: N802
         """Show a file, or none."""
         self._value = path
-        metrics = self.choose.fontMetrics()
-        shown = "" if path is None else metrics.elidedText(path.name, Qt.TextElideMode.ElideMiddle, FILE_NAME_PX)
-        self.choose.setText(shown or self._text)
+        self.choose.setText(self._text if path is None else path.name)
         self.choose.setAccessibleName("" if path is None else f"{self._text} {path.name}")
+        # A long name makes nothing wider.
+        wide = QSizePolicy.Policy.Minimum if path is None else QSizePolicy.Policy.Ignored
+        self.choose.setSizePolicy(wide, QSizePolicy.Policy.Fixed)
+        self.choose.setMinimumWidth(0 if path is None else LEAST_NAME_PX)
         self.without.setVisible(path is not None)
 
     def _ask(self) -> None:
