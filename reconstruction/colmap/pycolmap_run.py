@@ -6,6 +6,7 @@ pycolmap is imported here only, and only when it is asked for.
 from __future__ import annotations
 
 import importlib
+import math
 import sqlite3
 import threading
 from collections.abc import Callable, Hashable, Iterable, Sequence
@@ -41,7 +42,7 @@ PAIRS_PER_CALL = 60
 
 LEAST_PHOTOS = 3
 
-LEAST_APART_RAD = np.radians(10.0)
+LEAST_APART_RAD = math.radians(10.0)
 """Between what usual photos look at and the mean of all, from which on a focal length can be told from a distance."""
 
 Pair = tuple[str, str]
