@@ -177,6 +177,8 @@ def _plan(now: Milestones) -> Guidance:
 def _mission(now: Milestones) -> Guidance:
     if now.n_viewpoints is None:
         return _plan_first(now)
+    if not now.n_panels:  # an imported mission on a bare site: what it shows of no panel, no rule can measure
+        return _site_first(now)
     if now.n_errors is None:
         return Guidance(False, "", say("measure every pre-flight rule"), say("Check"), Act.CHECK)
     if now.n_errors:

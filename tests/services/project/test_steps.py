@@ -114,6 +114,12 @@ def test_a_plan_with_errors_is_not_done_and_its_first_error_is_shown():
     assert "2" in found.done
 
 
+def test_an_imported_mission_on_a_bare_site_is_led_to_panels_and_not_to_a_check_that_cannot_be_made():
+    bare = Milestones(n_panels=0, n_viewpoints=16)
+    assert guidance(Step.MISSION, bare).act is Act.TO_SITE
+    assert guidance(Step.MISSION, replace(bare, n_panels=40)).act is Act.CHECK
+
+
 def test_a_plan_with_warnings_is_done_and_they_are_to_be_read():
     found = guidance(Step.MISSION, Milestones(n_panels=280, n_viewpoints=60, n_errors=0, n_warnings=3))
     assert found.is_done
