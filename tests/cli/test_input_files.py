@@ -27,6 +27,7 @@ INPUT_FILES = {
     "city": ("city.json", "a building model"),
     "tsp": ("four.tsp", "a TSPLIB instance"),
     "page": ("page.html", "a file of another kind"),
+    "list": ("list.json", "a file of another kind"),
     "binary": ("photo.jpg", "a photo"),
 }
 """What is given, and what a message calls it."""
@@ -51,7 +52,7 @@ COMMANDS = {
         ("import", ..., "--site", "site.json", "-o", "out"),
         "a mission file",
         # The reader itself says these better.
-        {*MISSIONS, "folder", "page"},
+        {*MISSIONS, "folder", "page", "list"},
     ),
     "import --site": (("import", "m.kmz", "--site", ..., "-o", "out"), "a site file", {"site"}),
     "project new --site": (("project", "new", "out", "--site", ...), "a site file", {"site"}),
@@ -59,9 +60,9 @@ COMMANDS = {
     "project add": (("project", "add", ..., "plan.json"), "the folder of a project", {"project", "index", "folder"}),
     "project show": (("project", "show", ...), "the folder of a project", {"project", "index", "folder"}),
     "project migrate": (("project", "migrate", ...), "the folder of a project", {"project", "index", "folder"}),
-    "site import": (("site", "import", ..., "-o", "out"), "a building model", {"mesh", "city", "page"}),
+    "site import": (("site", "import", ..., "-o", "out"), "a building model", {"mesh", "city", "page", "list"}),
     "route": (("route", ...), "a TSPLIB instance", {"tsp"}),
-    "segment IMAGE": (("segment", ..., "-o", "out"), "a photo", {"page", "binary"}),
+    "segment IMAGE": (("segment", ..., "-o", "out"), "a photo", {"page", "list", "binary"}),
     "tradeoff plan": (("tradeoff", "plan", ..., "-o", "out"), "a site file", {"site"}),
     "tradeoff route": (("tradeoff", "route", ..., "-o", "out"), "a plan file", {"plan", "site", "tsp"}),
 }
@@ -99,6 +100,7 @@ def files(tmp_path_factory):
     (folder / "blank.json").write_bytes(b"\xef\xbb\xbf \n")
     (folder / "city.json").write_text('{"type": "CityJSON", "version": "1.1"}')
     (folder / "wall.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n")
+    (folder / "list.json").write_text("[1, 2]")
     (folder / "page.html").write_text("<!DOCTYPE html><html></html>")
     (folder / "photo.jpg").write_bytes(b"\xff\xd8\xff\xe0" + bytes(range(256)))
     (folder / "four.tsp").write_text("NAME : four\nTYPE : TSP\nDIMENSION : four\n")

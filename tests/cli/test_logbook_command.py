@@ -31,3 +31,9 @@ def test_a_project_has_a_book_of_its_own(reflight, tmp_path, monkeypatch):
     assert "no flights yet" in reflight("logbook").out
     (tmp_path / "tower" / "flights" / "log-book.json").write_text("{")
     assert "log-book.json" in reflight("logbook", "--project", tmp_path / "tower").error
+    (tmp_path / "new").mkdir()
+    (tmp_path / "new" / "project.json").write_text("{}")
+    assert "no flights yet" in reflight("logbook", "--project", tmp_path / "new").out
+    for nothing in ("towr", "config"):
+        error = reflight("logbook", "--project", tmp_path / nothing).error
+        assert "expected the folder of a project" in error, "a slip in the name is not a project without flights"

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from groundstation.cli.console import print_json, show, tell
+from planning.base.errors import InputError
 from planning.base.files import check_ending
 from planning.base.messages import say
 
@@ -41,9 +42,14 @@ def run(options: argparse.Namespace) -> int:
     """Show or write; returns the exit status."""
     from groundstation.services.fly.connection import flights_folder
     from groundstation.services.fly.log_book import battery_uses, book_path, read_book, write_book_csv
+    from groundstation.services.project.project_file import is_project
     from planning.base.json_file import plain_values
 
     path = book_path(None if options.project is None else flights_folder(options.project))
+    if options.project is not None and not path.exists() and not is_project(options.project):
+        raise InputError.say(
+            "expected the folder of a project, found none of that name; check the path", place=options.project
+        )
     every = read_book(path)
     entries = [each for each in every if options.simulated or not each.is_simulated]
     uses = battery_uses(every)

@@ -172,7 +172,7 @@ def _kind_of_json(path: Path) -> FileKind | None:
     except InputError:
         return None
     if not isinstance(content, dict):
-        return None
+        return FileKind.OTHER
     if content.get("type") == "CityJSON":
         return FileKind.BUILDING
     if content.get("fileType") == "Plan":
