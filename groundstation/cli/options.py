@@ -230,7 +230,7 @@ class PluginNames(Collection[str]):
     """
 
     def __init__(self, own: Iterable[str], *groups: PluginGroup) -> None:
-        self._own, self._groups = tuple(own), groups
+        self._own, self._groups = tuple(map(str, own)), groups  # what is listed is a name, no member of an enum
 
     def __contains__(self, name: object) -> bool:
         return name in self._own or any(plugin.name == name for plugin in self._plugins())

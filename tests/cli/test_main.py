@@ -69,6 +69,13 @@ def test_wrong_usage_ends_with_status_2_and_shows_the_usage(reflight, arguments)
     assert "Traceback" not in done.err
 
 
+def test_a_wrong_choice_lists_names_as_they_are_typed(reflight):
+    """Not as Python shows members of an enumeration."""
+    error = reflight("export", "plan.json", "--format", "doc", "-o", "out").err
+    assert "choose from 'dji-kmz', 'mavlink-plan'" in error
+    assert "<" not in error.splitlines()[-1]
+
+
 @pytest.mark.parametrize("command", ["demo", "site", "plan", "check", "export", "import", "route", "tradeoff"])
 def test_every_command_explains_itself(reflight, command):
     done = reflight(command, "-h")
