@@ -124,6 +124,7 @@ class FlyController(QObject):
         self._shown_plan = self.plan
         self._assign()
         context.documentChanged.connect(self._document_changed)
+        context.jobsChanged.connect(self._tell_state)  # a preparation that fails or is cancelled ends without a word
 
     @classmethod
     def of(cls, context: ApplicationContext) -> FlyController:

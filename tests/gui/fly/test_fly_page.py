@@ -17,6 +17,7 @@ from groundstation.services.fly.flight import DONE, REFUSALS
 from groundstation.services.fly.options import ConnectionChoice, LinkKind, choice_path, read_choice
 from groundstation.services.messages import translation
 from groundstation.services.project.document import Document, ItemKind, PlanEntry
+from groundstation.services.project.steps import Act, FlightState, Step, guidance
 from groundstation.services.settings import Language
 from groundstation.services.units import UnitSystem
 from groundstation.vehicle.preflight import Remedy
@@ -255,6 +256,18 @@ def test_an_address_that_leads_nowhere_is_told_and_another_can_be_tried(
     assert read_choice(choice_path()) == ConnectionChoice(kind, address)
     connect(application, page)
     assert page.controller.is_connected
+
+
+def test_a_flight_that_cannot_be_prepared_is_told_and_can_be_tried_again(application, controller, page):
+    model, plan = planned()
+    elsewhere = replace(model, site=replace(model.site, name="elsewhere"))
+    controller.context.session.open(Document(elsewhere, (PlanEntry("plan-1", "First", plan),), "plan-1"), None)
+    turn_until_idle(application, controller)
+    page.connection.button.click()
+    assert controller.context.milestones.flight is FlightState.BUSY
+    turn_until_idle(application, controller)
+    assert "Prepare the flight: " in controller.window.messages.texts()
+    assert guidance(Step.FLY, controller.context.milestones).act is Act.CONNECT
 
 
 def test_start_asks_and_a_no_leaves_the_aircraft_on_the_ground(application, page):
