@@ -169,6 +169,8 @@ class ImageErrorModel:
     ) -> None:
         self.surroundings, self.camera, self.terms, self.floor = surroundings, camera, tuple(terms), floor
         kinds = [rays for views in unseen if len(rays := self._rays(views))]
+        self.near_share = float(np.mean([np.mean(rays.distances_m < FAR_M) for rays in kinds])) if kinds else 0.0
+        """Of what unseen views show mirrored, the part that is nearer than `FAR_M`."""
         self._keys: list[NDArray[np.int64]] = []
         weights: list[Array] = [np.zeros(0)]
         for term in self.terms:

@@ -28,6 +28,8 @@ from planning.site.records import panel_corners
 from planning.viewpoints.budget import best_flights
 from planning.viewpoints.candidates import candidate_pool, spread_candidates
 from planning.viewpoints.least_error import (
+    DEVIATION_DB,
+    FAR_DEVIATION_DB,
     ErrorGain,
     ErrorState,
     add_or_remove,
@@ -402,3 +404,11 @@ def test_photos_that_are_there_count_in_the_worth_of_a_plan():
     second = plan_flight(site_model, request, prepared=ready, photos=photos).plan.worth
     assert second.batteries[0].psnr_db > first.batteries[0].psnr_db
     assert second.gain_db < first.gain_db
+
+
+@pytest.mark.parametrize(("name", "deviation_db"), [("court", DEVIATION_DB), ("roof", FAR_DEVIATION_DB)])
+def test_what_is_expected_errs_more_where_panes_mirror_little_that_is_near(name, deviation_db):
+    request = PlanRequest(n_views=6, greedy=GreedyParameters(n_candidates=300, certify=False), time_budget_s=10.0)
+    worth = plan_flight(SCENES[name](), request).plan.worth
+    assert worth is not None
+    assert worth.deviation_db == deviation_db
