@@ -404,6 +404,10 @@ def _of_level_ground(probe: Probe) -> Iterator[Any]:
     above.height_m, ceiling = level.height_m, max(p[2] for path in above.paths for p in path)
     above.high = (*above.high[:2], ceiling)
     yield probe.said(above.airspace)
+    shown = case(None)
+    shown.proof["boxes"], shown.plan["coverage"]["reachable_upper_bound"] = [], float(len(shown.panes) * shown.n)
+    for shown.height_m in (5.0, 8.0, 11.0, 14.0):  # fewer and fewer places that are shown are high enough
+        yield probe.said(lambda: (shown.reachable(),))
     for each in (above, level):
         each.low, each.high = (-20.0, -20.0, 3.0), (18.0, 16.0, 25.0)
 
