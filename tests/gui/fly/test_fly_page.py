@@ -110,7 +110,8 @@ def has_landed(page):
 def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(application, controller, page):
     """Ten times as fast; turns of the event loop are no longer than 50 ms, but for a few in which others work.
 
-    The simulated vehicle is in the same process, and machines are shared: of those few, the window's own work counts.
+    A turn counts as long as this process worked in it, for machines are shared. The simulated vehicle is in the same
+    process: of those few, the window's own work counts.
     """
     connect(application, page, speed_up=10.0)
     assert "not uploaded yet" in page.checks.text()
@@ -128,9 +129,10 @@ def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(applicati
     gc.collect()
     turns = []
     while not has_landed(page):
-        started, own = time.perf_counter(), time.thread_time()
+        started, worked, own = time.perf_counter(), time.process_time(), time.thread_time()
         application.processEvents()
-        turns.append((time.perf_counter() - started, time.thread_time() - own))
+        taken = min(time.perf_counter() - started, time.process_time() - worked)
+        turns.append((taken, time.thread_time() - own))
         time.sleep(0.001)
     longest = sorted(turns, reverse=True)[: len(turns) // ONE_IN + 1]
     assert longest[-1][0] < GAP_S, longest
