@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -91,8 +92,12 @@ class StartPage(QObject):
             if widget is not None:
                 widget.hide()
                 widget.deleteLater()
-        for folder in folders[:MOST_RECENT]:
-            button = QPushButton(Path(folder).name)
+        shown = folders[:MOST_RECENT]
+        of_name = Counter(Path(folder).name for folder in shown)
+        for folder in shown:
+            name, parent = Path(folder).name, Path(folder).parent.name
+            text = name if of_name[name] == 1 else self.tr("{0} in {1}").format(name, parent)
+            button = QPushButton(text.replace("&", "&&"))  # else it underlines what comes next
             button.setToolTip(folder)
             set_icon(button, "recent")
             button.clicked.connect(partial(self._ask_for, folder))

@@ -347,7 +347,7 @@ class Menus(QObject):
     def _list_recent(self) -> None:
         self._recent.clear()
         for folder in self._commands.settings().recent_projects:
-            self._add(self._recent, folder, "", partial(self._commands.open_recent, folder))
+            self._add(self._recent, folder.replace("&", "&&"), "", partial(self._commands.open_recent, folder))
         if self._recent.isEmpty():
             self._recent.addAction(self.tr("none yet")).setEnabled(False)
 

@@ -1,6 +1,7 @@
 """The start page and what leads on from it, by clicks: the sample, the ways to begin, and the steps that are ticked."""
 
 import pytest
+from PySide6.QtWidgets import QPushButton
 
 from groundstation.gui.tabs import TABS
 from groundstation.services.project.steps import Step
@@ -73,6 +74,13 @@ def test_each_way_to_begin_shows_its_tab_and_asks_for_files(application, control
     assert asked[0].startswith(dialog)
     assert controller.window.shown_tab() == tab
     assert controller.window.next_step.isVisible()
+
+
+def test_projects_that_were_open_are_told_apart_and_named_as_their_folders(controller):
+    controller.window.tab("start").set_recent(("/a/Nord & Co/tower", "/b/S\u00fcd/tower", "/c/Ost & West"))
+    buttons = controller.window.findChildren(QPushButton)
+    texts = [button.text() for button in buttons if button.toolTip().startswith(("/a/", "/b/", "/c/"))]
+    assert texts == ["tower in Nord && Co", "tower in S\u00fcd", "Ost && West"], "a single & marks a shortcut"
 
 
 def test_projects_that_were_open_are_offered_and_one_that_has_gone_is_told(application, controller, tmp_path):
