@@ -134,7 +134,7 @@ def train_reflections(
         precision = faster_precision(config.mlp, config.batch, config.threads) if model == "mlp" else "float32"
     checked = _sample(unseen, CHECKED, config.seed) if unseen is not None and len(unseen) else None
     settings = config.for_grid if model == "radiance-grid" else config
-    with _threads(config.threads):
+    with torch_threads(config.threads):
         generator = torch.Generator().manual_seed(config.seed)
         initial = new_panels(rays, planes, model, config, generator)
         training = LightTraining(initial, rays, settings, precision, generator, keeping, device, clock)
@@ -249,10 +249,10 @@ def _sample(rays: GlassRays, n: int, seed: int) -> GlassRays:
 
 
 @contextmanager
-def _threads(n_threads: int) -> Iterator[None]:
+def torch_threads(number: int) -> Iterator[None]:
     """Give torch so many threads for a block. On shared cores, threads that wait for others take most of the time."""
     before = torch.get_num_threads()
-    torch.set_num_threads(n_threads)
+    torch.set_num_threads(number)
     try:
         yield
     finally:
@@ -262,7 +262,7 @@ def _threads(n_threads: int) -> Iterator[None]:
 @cache
 def faster_precision(shape: MlpShape, batch: int, n_threads: int) -> Precision:
     """What trains an MLP faster here, by the best of five steps each; found out once in a process."""
-    with _threads(n_threads):
+    with torch_threads(n_threads):
         generator = torch.Generator().manual_seed(0)
         mlp = ReflectionMlp(shape, 0.5, generator)
         points, directions = torch.rand(2, batch, 3, generator=generator)

@@ -18,6 +18,7 @@ from planning.base.json_file import to_record
 from planning.base.messages import say
 from planning.base.progress import QualityPoint
 from reconstruction.light.photo_set import PhotoSet, read_photo_set
+from reconstruction.light.training import torch_threads
 from reconstruction.metrics.image_metrics import Quality
 from reconstruction.splats.rasterising.views import View
 from reconstruction.training.callbacks import Callbacks, HeldOut
@@ -118,7 +119,8 @@ def train_model(
             raise ValueError("checkpoint: expected one where several processes train together")
         return _joined_later(folder, checkpoint, watching, ranks, watch)
     source = read_photo_set(folder)
-    start = start_model(source, config, watching.monitor, watch, checkpoint, splats_path=splats_path)
+    with torch_threads(config.threads):
+        start = start_model(source, config, watching.monitor, watch, checkpoint, splats_path=splats_path)
     return _started(source, start, watching, checkpoint, ranks, watch)
 
 
@@ -210,7 +212,8 @@ def resume_model(
         raise InputError(say("shows other panels; name the data set that the training was begun with", place=folder))
     watch.before_s += interrupted.spent_s
     source = read_photo_set(folder)
-    start = start_model(source, config, watching.monitor, watch, checkpoint, interrupted)
+    with torch_threads(config.threads):
+        start = start_model(source, config, watching.monitor, watch, checkpoint, interrupted)
     return _started(source, start, watching, checkpoint, ranks, watch)
 
 

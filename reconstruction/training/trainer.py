@@ -25,6 +25,7 @@ from planning.base.messages import say
 from reconstruction.base.out_of_memory import NotFinite, is_out_of_memory, require_finite
 from reconstruction.gpu.device import DeviceFailed, open_device
 from reconstruction.light.losses import no_brighter
+from reconstruction.light.training import torch_threads
 from reconstruction.splats.densification.adaptive import AdaptiveControl, AdaptiveParameters
 from reconstruction.splats.densification.mcmc import MarkovChain, McmcParameters
 from reconstruction.splats.densification.strategy import Densification, FixedNumber, Limits
@@ -336,15 +337,12 @@ class Trainer(TrainingState):
         OperationCancelled
             From the monitor; the state is on the disk then.
         """
-        before = torch.get_num_threads()
-        torch.set_num_threads(self.config.threads)
-        try:
-            self._run(watching, until)
-        except OperationCancelled:
-            self.save()
-            raise
-        finally:
-            torch.set_num_threads(before)
+        with torch_threads(self.config.threads):
+            try:
+                self._run(watching, until)
+            except OperationCancelled:
+                self.save()
+                raise
 
     def _run(self, watching: Callbacks, until: float) -> None:
         self.model.train()
