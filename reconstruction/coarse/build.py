@@ -41,7 +41,7 @@ from planning.photos.places import (
 from planning.photos.record import PhotoMetadata
 from planning.site.records import MAX_DISTANCE_M
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
-from reconstruction.coarse.buildings import Buildings, make_buildings, moved
+from reconstruction.coarse.buildings import Buildings, about_ground, about_walls, make_buildings, moved
 from reconstruction.coarse.cloud import (
     Cloud,
     Up,
@@ -65,6 +65,8 @@ from reconstruction.coarse.placing import (
     Measured,
     Placed,
     about_height,
+    about_lens,
+    about_positions,
     contradicts,
     in_sigmas,
     place_model,
@@ -83,7 +85,6 @@ from reconstruction.colmap.pycolmap_run import (
     as_model,
     do_not_fit,
     load_colmap,
-    look_one_way,
     transform,
 )
 from reconstruction.colmap.receivers import Receiver, placed_by_receivers
@@ -286,7 +287,7 @@ def build_coarse(
     left_out = tuple(name for name in taken.names if name not in {photo.name for photo in posed})
     known = taken.origin is not None or stated.origin is not None or bool(stated.control)
     findings = (*taken.findings, *lately, *placed.findings, *_left_out(left_out, len(taken.names)))
-    findings += (*_about_ground(buildings), *about_walls(buildings, forwards), *_about_place(known))
+    findings += (*about_ground(buildings), *about_walls(buildings, forwards), *_about_place(known))
     findings += about_height(origin) if _says_height(taken.metadata) else ()
     n = len(taken.names)
     return CoarseModel(
@@ -598,9 +599,9 @@ def _in_place(
             other_model = as_model(other, scratch / "relensed")
             again, found_again = _place(other_model, taken, stated, parameters)
             if in_sigmas(again, own) < BETTER_LENS * in_sigmas(placed, own):
-                lately = _about_lens(placed, again)
+                lately = about_lens(placed, again)
                 free, fixed, model, placed, findings = other, set(), other_model, again, found_again
-        lately = lately or _about_positions(placed, own)
+        lately = lately or about_positions(placed, own)
     model = in_enu(model, placed.enu_from_model)
     if placed.scale_from == "positions":
         used = {image.name for image, is_used in zip(model.images.values(), placed.is_used, strict=True) if is_used}
@@ -620,33 +621,6 @@ LEAST_FOR_LENS, BETTER_LENS = 10, 0.5
 def _measured_of(model: ColmapModel, taken: _Taken) -> list[Measured]:
     row_of = {name: row for row, name in enumerate(taken.names)}
     return [taken.measured[row_of[image.name]] for image in model.images.values()]
-
-
-def _median_off_m(placed: Placed) -> float:
-    return float(np.nanmedian(np.linalg.norm(placed.residuals_m, axis=1)))
-
-
-def _about_lens(stated: Placed, found: Placed) -> tuple[Finding, ...]:
-    text = say(
-        "the lens that the photos state does not fit their positions, which the model then misses by {:.2f} m: it was "
-        "found with the model, which meets them to {:.2f} m",
-        _median_off_m(stated),
-        _median_off_m(found),
-    )
-    return (Finding(Severity.NOTE, "lens-contradicts", text, "", _median_off_m(stated), _median_off_m(found), "m"),)
-
-
-def _about_positions(placed: Placed, measured: Sequence[Measured]) -> tuple[Finding, ...]:
-    if not contradicts(placed, measured):
-        return ()
-    times = in_sigmas(placed, measured)
-    text = say(
-        "the model misses the photos' positions by {:.2f} m in the middle, {:.0f} times what these state: the lens, "
-        "the time of exposure or the mount of the antenna is off, or RTK was not fixed; check a known length",
-        _median_off_m(placed),
-        times,
-    )
-    return (Finding(Severity.WARNING, "positions-missed", text, "", _median_off_m(placed), None, "m"),)
 
 
 def _receivers(taken: _Taken) -> dict[str, Receiver]:
@@ -906,61 +880,6 @@ def _left_out(names: Sequence[str], n_all: int) -> list[Finding]:
         return []
     text = say("{} of {} photos found no place in the model, the first {}", len(names), n_all, names[0])
     return [Finding(Severity.WARNING, "photos-left-out", text, "", float(len(names)), 0.0, "photos")]
-
-
-def _about_ground(buildings: Buildings) -> list[Finding]:
-    ground, found = buildings.ground, []
-    if not ground.is_seen:
-        text = say("no ground was seen: it is taken to be where the lowest points are")
-        found.append(Finding(Severity.WARNING, "ground-guessed", text))
-    elif ground.slope_deg > 3.0:
-        text = say("the ground falls by {:.1f} degrees; heights count from the building's foot", ground.slope_deg)
-        found.append(Finding(Severity.NOTE, "ground-slopes", text, "", ground.slope_deg, 3.0, "deg"))
-    return found
-
-
-STRAIGHT_DOWN = math.sin(math.radians(65.0))
-
-
-MOSTLY_GUESSED = 0.5
-"""Share of walls from which on photos that look straight down are told to be why."""
-
-
-def about_walls(buildings: Buildings, forwards: Array) -> list[Finding]:
-    """What is said of walls that were not seen, and of heights.
-
-    Parameters
-    ----------
-    forwards
-        Of the cameras, ENU, shape (n, 3).
-    """
-    found = [Finding(Severity.WARNING, "walls-missing", note) for note in buildings.notes]
-    looks_down = float(np.median(-forwards[:, 2])) > STRAIGHT_DOWN
-    guessed = [face for face in buildings.faces if face.wall is None]
-    share = sum(face.area_m2 for face in guessed) / max(1e-9, sum(face.area_m2 for face in buildings.faces))
-    is_bare = not buildings.walls or share > MOSTLY_GUESSED
-    if is_bare and looks_down:
-        text = say(
-            "the photos look straight down, where walls do not show: fly around the building too, with the camera 20 "
-            "to 45 degrees below the horizon"
-        )
-        found = [Finding(Severity.WARNING, "looks-down", text)]
-    if looks_down and look_one_way(forwards):
-        text = say(
-            "all photos look straight down: heights of ground and roofs are as good as their focal length only; photos "
-            "that look to the side too, or control points, say them"
-        )
-        found.append(Finding(Severity.NOTE, "heights-by-lens", text))
-    if guessed:
-        text = say(
-            "{} of {} sides of the building were not seen and are guessed, {:.0f} % of its walls; fly around it before "
-            "you plan flights there",
-            len(guessed),
-            len(buildings.faces),
-            100.0 * share,
-        )
-        found.append(Finding(Severity.WARNING, "walls-guessed", text, "", 100.0 * share, None, "%"))
-    return found
 
 
 def _about_place(is_known: bool) -> list[Finding]:

@@ -20,11 +20,13 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import breadth_first_order, maximum_flow
 
+from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import TriangleMesh, empty_mesh, from_corners
 from reconstruction.coarse.cloud import Cloud, FoundPlane
 from reconstruction.coarse.walls import BuildingParameters, Ground, Wall, find_ground, find_roofs, find_walls
+from reconstruction.colmap.pycolmap_run import look_one_way
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -603,3 +605,61 @@ def moved(buildings: Buildings, shift: Array) -> Buildings:
     others = tuple((low + shift, high + shift) for low, high in buildings.others)
     ground = replace(buildings.ground, z_m=buildings.ground.z_m + up)
     return replace(buildings, ground=ground, walls=walls, roofs=roofs, mesh=mesh, faces=faces, others=others)
+
+
+# What is said of it.
+
+
+def about_ground(buildings: Buildings) -> list[Finding]:
+    """What is said of ground that was not seen, or that slopes."""
+    ground, found = buildings.ground, []
+    if not ground.is_seen:
+        text = say("no ground was seen: it is taken to be where the lowest points are")
+        found.append(Finding(Severity.WARNING, "ground-guessed", text))
+    elif ground.slope_deg > 3.0:
+        text = say("the ground falls by {:.1f} degrees; heights count from the building's foot", ground.slope_deg)
+        found.append(Finding(Severity.NOTE, "ground-slopes", text, "", ground.slope_deg, 3.0, "deg"))
+    return found
+
+
+STRAIGHT_DOWN = math.sin(math.radians(65.0))
+
+MOSTLY_GUESSED = 0.5
+"""Share of walls from which on photos that look straight down are told to be why."""
+
+
+def about_walls(buildings: Buildings, forwards: Array) -> list[Finding]:
+    """What is said of walls that were not seen, and of heights.
+
+    Parameters
+    ----------
+    forwards
+        Of the cameras, ENU, shape (n, 3).
+    """
+    found = [Finding(Severity.WARNING, "walls-missing", note) for note in buildings.notes]
+    looks_down = float(np.median(-forwards[:, 2])) > STRAIGHT_DOWN
+    guessed = [face for face in buildings.faces if face.wall is None]
+    share = sum(face.area_m2 for face in guessed) / max(1e-9, sum(face.area_m2 for face in buildings.faces))
+    is_bare = not buildings.walls or share > MOSTLY_GUESSED
+    if is_bare and looks_down:
+        text = say(
+            "the photos look straight down, where walls do not show: fly around the building too, with the camera 20 "
+            "to 45 degrees below the horizon"
+        )
+        found = [Finding(Severity.WARNING, "looks-down", text)]
+    if looks_down and look_one_way(forwards):
+        text = say(
+            "all photos look straight down: heights of ground and roofs are as good as their focal length only; photos "
+            "that look to the side too, or control points, say them"
+        )
+        found.append(Finding(Severity.NOTE, "heights-by-lens", text))
+    if guessed:
+        text = say(
+            "{} of {} sides of the building were not seen and are guessed, {:.0f} % of its walls; fly around it before "
+            "you plan flights there",
+            len(guessed),
+            len(buildings.faces),
+            100.0 * share,
+        )
+        found.append(Finding(Severity.WARNING, "walls-guessed", text, "", 100.0 * share, None, "%"))
+    return found

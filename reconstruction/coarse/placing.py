@@ -523,3 +523,32 @@ def about_height(origin: Origin) -> tuple[Finding, ...]:
         -amsl_m,
     )
     return (Finding(Severity.WARNING, "ground-below-sea", text, "", amsl_m, LOWEST_GROUND_M, "m"),)
+
+
+def _median_off_m(placed: Placed) -> float:
+    return float(np.nanmedian(np.linalg.norm(placed.residuals_m, axis=1)))
+
+
+def about_lens(stated: Placed, found: Placed) -> tuple[Finding, ...]:
+    """What is said of a model whose lens was found again, as the stated one contradicted its photos' positions."""
+    text = say(
+        "the lens that the photos state does not fit their positions, which the model then misses by {:.2f} m: it was "
+        "found with the model, which meets them to {:.2f} m",
+        _median_off_m(stated),
+        _median_off_m(found),
+    )
+    return (Finding(Severity.NOTE, "lens-contradicts", text, "", _median_off_m(stated), _median_off_m(found), "m"),)
+
+
+def about_positions(placed: Placed, measured: Sequence[Measured]) -> tuple[Finding, ...]:
+    """What is said where positions contradict the model; arguments as of `in_sigmas`."""
+    if not contradicts(placed, measured):
+        return ()
+    times = in_sigmas(placed, measured)
+    text = say(
+        "the model misses the photos' positions by {:.2f} m in the middle, {:.0f} times what these state: the lens, "
+        "the time of exposure or the mount of the antenna is off, or RTK was not fixed; check a known length",
+        _median_off_m(placed),
+        times,
+    )
+    return (Finding(Severity.WARNING, "positions-missed", text, "", _median_off_m(placed), None, "m"),)

@@ -10,8 +10,7 @@ import pytest
 from planning.geo.mesh import closed_parts
 from planning.geo.ray_casting import RayCaster
 from reconstruction.base.cameras import cam_from_enu
-from reconstruction.coarse.build import about_walls
-from reconstruction.coarse.buildings import Face, make_buildings, moved, prism
+from reconstruction.coarse.buildings import Face, about_walls, make_buildings, moved, prism
 from reconstruction.coarse.cloud import in_ring
 from reconstruction.coarse.walls import BuildingParameters, find_ground
 from tests.reconstruction.coarse.synthetic_clouds import LOW, TALL, cameras, made_cloud
