@@ -4100,10 +4100,6 @@ Blickrichtung: {3}</translation>
         <translation>Wert für weiteren Akku</translation>
     </message>
     <message>
-        <source>as many batteries as are worth it: until another would bring unseen views less than so many dB more</source>
-        <translation>so viele Akkus, wie es sich lohnt: bis ein weiterer ungesehenen Ansichten weniger als so viele dB mehr brächte</translation>
-    </message>
-    <message>
         <source>Aircraft</source>
         <translation>Fluggerät</translation>
     </message>
@@ -4186,6 +4182,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Target coverage</source>
         <translation>Zielabdeckung</translation>
+    </message>
+    <message>
+        <source>as many batteries as are worth it: until another would make pictures from new places less than so many dB better; 0.5 dB are 6 % less error</source>
+        <translation>so viele Akkus, wie es sich lohnt: bis ein weiterer Bilder von neuen Orten um weniger als so viele dB besser machte; 0,5 dB sind 6 % weniger Fehler</translation>
     </message>
     <message>
         <source>Wanted GSD</source>
@@ -8079,6 +8079,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>alle Fotos entstehen im Schweben, also verzerrt der elektronische Verschluss keines</translation>
     </message>
     <message>
+        <source>all photos look straight down: heights of ground and roofs are as good as their focal length only; photos that look to the side too, or control points, say them</source>
+        <translation>alle Fotos blicken senkrecht nach unten: Höhen von Boden und Dächern sind nur so gut wie ihre Brennweite; Fotos, die auch zur Seite blicken, oder Passpunkte sagen sie</translation>
+    </message>
+    <message>
         <source>all photos that were looked at show the same points</source>
         <translation>alle angesehenen Fotos zeigen dieselben Punkte</translation>
     </message>
@@ -8983,6 +8987,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected the folder of a model; &apos;records FOLDER make --objects SITE&apos; makes one for records alone</source>
         <translation>erwartet wird der Ordner eines Modells; &apos;records FOLDER make --objects SITE&apos; legt einen für Einträge allein an</translation>
+    </message>
+    <message>
+        <source>expected the folder of a project, found none of that name; check the path</source>
+        <translation>erwartet wurde der Ordner eines Projekts, gefunden keiner dieses Namens; prüfen Sie den Pfad</translation>
     </message>
     <message>
         <source>expected the ground between its bounds</source>
@@ -21394,8 +21402,8 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Video</translation>
     </message>
     <message>
-        <source>From the camera</source>
-        <translation>Von der Kamera</translation>
+        <source>Choose file ...</source>
+        <translation>Datei wählen ...</translation>
     </message>
     <message>
         <source>Camera definition file</source>
@@ -22287,6 +22295,10 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Recent projects</source>
         <translation>Zuletzt geöffnet</translation>
+    </message>
+    <message>
+        <source>{0} in {1}</source>
+        <translation>{0} in {1}</translation>
     </message>
     <message>
         <source>Sample project</source>
