@@ -586,7 +586,7 @@ class FlyController(QObject):
         if event.record is not None:
             case = active.sortie.case
             self.after.add(case.plan, case.site_model, event.record, active.battery)
-            flown = {record.sortie for record in self.after.flown(case.plan)}
+            flown = {each.sortie for each in self.after.flown(case.plan) if each.duration_s is not None}
             if case.plan is self.plan and len(flown) >= len(case.plan.sorties):
                 self._context.note(is_flown=True)
             # Only a simulated vehicle tells with which effects it flew.

@@ -150,6 +150,7 @@ def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(applicati
     page.report.top_up.click()
     turn_until_idle(application, controller)
     assert "Nothing is missing" in controller.window.messages.texts()
+    assert controller.context.milestones.is_flown
 
 
 @pytest.mark.slow
@@ -845,6 +846,16 @@ def test_after_disconnecting_no_battery_and_no_height_is_shown_for_that_of_now(a
     assert "0/6" in shown, "what was photographed stays"
     connect(application, page)
     turn_until(application, lambda: "100%" in page.readouts.text())
+
+
+def test_a_flight_that_was_disconnected_in_the_air_is_not_flown(application, controller, page):
+    connect(application, page, speed_up=10.0)
+    take_off(application, page)
+    with clicked("Yes"):
+        page.connection.button.click()
+    turn_until(application, lambda: has_landed(page))
+    assert len(page.controller.active.ended.record.photos) < 6
+    assert not controller.context.milestones.is_flown
 
 
 @pytest.mark.slow
