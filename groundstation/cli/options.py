@@ -488,7 +488,7 @@ def add_place_and_content(command: argparse.ArgumentParser) -> None:
         "building; you are asked where two heights may be it)",
     )
     content = command.add_argument_group("what is in the file").add_argument
-    content("--building", metavar="ID", help="the building wanted, in a file with many")
+    content("--building", metavar="ID", help="the building wanted, in a CityGML or CityJSON file with many")
     content("--units", default="m", choices=("m", "cm", "mm", "ft", "in", "us-ft"), help="of a mesh file (default m)")
     content("--up", choices=("y", "z"), help="axis that points up in a mesh file (default: y for GLB, else z)")
     content("--deflection", type=number, default=0.005, metavar="M", help="of curved IFC surfaces (default 0.005 m)")

@@ -321,6 +321,12 @@ def read_source(path: Path, options: ImportOptions, monitor: Monitor = QUIET) ->
         raise InputError.say("expected a file ending in {}, got '{}'", ", ".join(SUFFIXES), suffix, place=path)
     if not path.exists():
         raise InputError.say("there is no such file", place=path)
+    if options.building is not None and suffix not in (*CITYGML_SUFFIXES, *CITYJSON_SUFFIXES):
+        raise InputError.say(
+            "has no building '{}' to choose: only CityGML and CityJSON files are read as several buildings",
+            options.building,
+            place=path,
+        )
     if suffix in IFC_SUFFIXES:
         from planning.site.importing.ifc_file import read_ifc
 

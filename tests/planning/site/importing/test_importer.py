@@ -248,6 +248,14 @@ def tower(tmp_path: Path) -> Path:
 GRID = ["--panel-grid", "-10,-6,0 10,-6,0 -10,-6,12", "--rows", "3", "--columns", "4"]
 
 
+def test_a_file_of_one_building_has_none_to_choose(tmp_path: Path) -> None:
+    path = tmp_path / "block.obj"
+    trimesh.creation.box((4.0, 4.0, 4.0)).export(path)
+    with pytest.raises(InputError, match="has no building 'TOWER' to choose"):
+        import_site(path, ImportOptions(building="TOWER"))
+
+
+
 def test_json_is_one_object_and_nothing_else(tower: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tower.with_name("site.json")
     arguments = ["site", "import", str(tower), "-o", str(out), "--origin", "-33.8,151.2,-20", *GRID, "--json"]
