@@ -255,7 +255,6 @@ def test_a_file_of_one_building_has_none_to_choose(tmp_path: Path) -> None:
         import_site(path, ImportOptions(building="TOWER"))
 
 
-
 def test_json_is_one_object_and_nothing_else(tower: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tower.with_name("site.json")
     arguments = ["site", "import", str(tower), "-o", str(out), "--origin", "-33.8,151.2,-20", *GRID, "--json"]
