@@ -49,6 +49,9 @@ SHOWN, FACADE = 1, 2
 NO_MIRROR = -1.0
 """In the place of the cosine of a pixel that mirrors nothing."""
 
+BEYOND_M = 1e30
+"""In the place of an infinite depth, which shaders have no word for."""
+
 PIXELS_A_THREAD = 8
 """Of kernels that add up over all pixels."""
 
@@ -79,6 +82,7 @@ PICTURE: dict[str, Constant] = {
     "LEAST_REFLECTIVITY": LEAST_REFLECTIVITY,
     "SEEN": SEEN,
     "CLOSED": CLOSED,
+    "BEYOND": BEYOND_M,
     "SHORTEST": SHORTEST,
 }
 
@@ -137,7 +141,8 @@ class CardGradients:
     n_pixels
         Of the picture; gradients are those of the loss times as many.
     looked_at
-        SRGB values, shape (h, w, 3), and weighted depths, shape (h, w), of the picture; None where nobody asked.
+        SRGB values, shape (h, w, 3), and `Raster.surface_depths_m`, shape (h, w), of the picture; None where nobody
+        asked.
     """
 
     drawing: Drawing
@@ -579,9 +584,10 @@ class _CardPicture:
         return [(piece, 16 * self.n) for piece in self._look]
 
     def look(self, raw: NDArray[np.uint8]) -> tuple[Tensor, Tensor]:
-        """The picture's sRGB values, shape (h, w, 3), and weighted depths, shape (h, w)."""
+        """The picture's sRGB values, shape (h, w, 3), and depths of surfaces, shape (h, w)."""
         values = torch.from_numpy(raw.view(np.float32).reshape(self.view.height_px, self.view.width_px, 4))
-        return values[..., :3], values[..., 3]
+        depths = values[..., 3]
+        return values[..., :3], torch.where(depths < BEYOND_M, depths, torch.inf)
 
     def terms(self, sums: _Sums) -> dict[str, float]:
         """What each weighted term adds to the loss, as `objective` has it."""

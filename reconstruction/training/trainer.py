@@ -508,7 +508,7 @@ class Trainer(TrainingState):
             picture = self.picture(sample, self.exposures(sample.number), offsets, move)
             terms = self._gradients(picture, looked_at, more)
             if is_looked_at:
-                self.transients.see(sample, picture.display, picture.raster.depths)
+                self.transients.see(sample, picture.display, picture.raster.surface_depths_m)
             self.is_editing = True
             observe_pictures(strategy, picture.raster, offsets, samples, self._ranks, weight)
             strategy.before_step(at.step, splats, self.optimiser)

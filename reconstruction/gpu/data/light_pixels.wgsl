@@ -52,7 +52,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
         textureStore(bodies, texel(number),
             vec4f(body.normal, select(-1.0, state.y / state.x, state.x > CLOSED)));
 //: if LOOKED_AT
-        looked_at[number] = vec4f(display, state.y);
+        looked_at[number] = vec4f(display, select(BEYOND, state.y / state.x, state.x > 0.5));
 //: end
         let off = dot(abs(compared - wanted), vec3f(1.0));
         error += off;

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import torch
 from torch import Tensor
 
 from planning.base.messages import say
@@ -135,6 +136,11 @@ class Raster:
     labels: Tensor | None
     weights: Tensor
     radii_px: Tensor
+
+    @property
+    def surface_depths_m(self) -> Tensor:
+        """Depth along the optical axis of what covers a pixel, shape (h, w); infinite where that is under a half."""
+        return torch.where(self.alphas > 0.5, self.depths / self.alphas.clamp(min=0.5), torch.inf)
 
 
 def steepest(focal_px: float) -> float:

@@ -122,8 +122,7 @@ def _fresnel(picture: Picture) -> Tensor:
 
 
 def _depth(picture: Picture) -> Tensor:
-    raster = picture.raster
-    return torch.where(raster.alphas > 0.5, raster.depths / raster.alphas.clamp(min=0.5), torch.inf)
+    return picture.raster.surface_depths_m
 
 
 def _normals(picture: Picture) -> Tensor:

@@ -79,7 +79,7 @@ class Transients(nn.Module):
         Parameters
         ----------
         display, depths
-            SRGB values, shape (h, w, 3), and depths along the optical axis, shape (h, w).
+            SRGB values, shape (h, w, 3), and depths of surfaces along the optical axis, shape (h, w), infinite for sky.
         """
         height, width = depths.shape
         of_pixels = self.blocks.of_window(sample.number, sample.x_px, sample.y_px, width, height)
