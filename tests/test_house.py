@@ -103,7 +103,8 @@ READERS = {
     # Files of our own: in the package, or made by a process of ours a moment ago; the system's; texts of our own.
     "planning/geo/geoid.py", "planning/base/step_physical_file.py",
     "planning/site/importing/ifc_file.py", "reconstruction/records/ifc/importing.py",
-    "reconstruction/exports/web.py", "reconstruction/gpu/shaders.py", "reconstruction/panels/network/confidence.py",
+    "reconstruction/colmap/pycolmap_run.py", "reconstruction/exports/web.py", "reconstruction/gpu/shaders.py",
+    "reconstruction/panels/network/confidence.py",
     "reconstruction/panels/network/network.py", "reconstruction/photos/lens.py",
     "reconstruction/panels/network/random_pictures.py", "reconstruction/panels/network/pool.py",
     "reconstruction/scenes/runs/cluster_workers.py", "reconstruction/scenes/runs/run_record.py",
