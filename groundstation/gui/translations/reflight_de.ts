@@ -9445,6 +9445,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>hat kein &apos;{0}&apos;, das sind also Punkte und keine Splats</translation>
     </message>
     <message>
+        <source>has no building &apos;{0}&apos; to choose: only CityGML and CityJSON files are read as several buildings</source>
+        <translation>hat kein Gebäude „{0}“ zur Auswahl: Nur CityGML- und CityJSON-Dateien werden als mehrere Gebäude gelesen</translation>
+    </message>
+    <message>
         <source>has no heights below the airspace of the site, which lies at {0}, {1} (tile {2}); give files that cover it</source>
         <translation>hat keine Höhen unter dem Luftraum des Standorts, der bei {0}, {1} liegt (Kachel {2}); Dateien angeben, die ihn abdecken</translation>
     </message>
