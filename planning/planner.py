@@ -184,8 +184,8 @@ REACHABILITY_SHARE, ROUTING_SHARE, FINISHING_SHARE = 0.3, 0.3, 0.2
 choice of views takes to come to its end once it was asked to."""
 
 ENDING_SHARE = 0.6
-"""Of the time that a program spent before it planned, for what it does behind it: worth, proof and writing take that
-long on a slow computer and a fast one, on small sites and large ones (`--only time-budgets`)."""
+"""Of the time that a program spent before it planned, kept for what it does behind it: worth, proof and writing. Both
+grow with the size of a site and with the slowness of a computer."""
 
 SHORTEST_ROUTING_S = 1.0
 LONGEST_ROUTING_S = 4.0

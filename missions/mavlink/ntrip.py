@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 from enum import Enum, auto
 
 from planning.base.errors import InputError
-from planning.base.messages import say
+from planning.base.messages import first_few, say
 
 MAX_HEAD = 16 * 1024
 """Bytes of headers: a caster that sends more sends without end."""
@@ -219,7 +219,7 @@ class CasterAnswer:
             if len(fields) == 3 and fields[0] == b"STR" and re.fullmatch(rb"[\w.+-]{1,40}", fields[1]):
                 self._names = [*self._names, fields[1].decode("ascii")][: MAX_NAMES + 1]
         if self._names:
-            shown = ", ".join(self._names[:MAX_NAMES]) + (", ..." if len(self._names) > MAX_NAMES else "")
+            shown = first_few(self._names, MAX_NAMES)
             self.problem = say("it knows no mountpoint of this name; it has {}", shown)
         if is_over:
             self._refuse(self.problem, is_final=True)

@@ -14,7 +14,7 @@ An f-string of a message is plain text, in which nobody finds its parts again; `
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from string import Formatter
 from typing import Any
@@ -118,6 +118,11 @@ def joined(separator: str, parts: Iterable[object]) -> Message:
     for part in parts:
         between += [separator, part] if between else [part]
     return glue(*between)
+
+
+def first_few(names: Sequence[object], most: int) -> Message:
+    """Names with commas between them; "..." stands for those behind the first few."""
+    return joined(", ", (*names[:most], *(["..."] if len(names) > most else [])))
 
 
 def packed(text: str) -> Any:

@@ -379,7 +379,7 @@ def start_model(
     config = replace(
         config,
         own_exposures="on" if has_gains else "off",
-        outlier_photos="on" if told.outliers else "off",
+        outlier_photos="on" if told.outlier_photos.on else "off",
     )
     decisions: tuple[Decision, ...] = (told.own_exposures, told.outlier_photos)
     known = [source.own_exposures.get(photo.name, 1.0) for photo in learned]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from groundstation.services.messages import LANGUAGES, localized, translation
 from groundstation.services.settings import Language
 from groundstation.services.units import UnitSystem
-from planning.base.messages import Message, about, glue, joined, packed, say, unpacked, without_place
+from planning.base.messages import Message, about, first_few, glue, joined, packed, say, unpacked, without_place
 
 TEXTS = st.one_of(
     st.text(max_size=12),
@@ -81,3 +81,9 @@ def test_a_message_comes_back_from_json_with_its_parts():
         assert (back, type(back)) == (text, type(text))
         if isinstance(text, Message):
             assert (back.template, back.values, back.place) == (text.template, text.values, text.place)
+
+
+def test_the_first_few_names_stand_for_all():
+    assert first_few([], 2) == ""
+    assert first_few(["a", "b"], 2) == "a, b"
+    assert first_few(["a", "b", "c"], 2) == "a, b, ..."

@@ -8,7 +8,7 @@ from typing import Any
 
 from groundstation.cli.console import counted, print_json, run_job, show, tell
 from groundstation.cli.options import new_folder
-from planning.base.messages import about, joined
+from planning.base.messages import about, first_few, joined
 
 EPILOG = """examples:
   organise tower.model -o tower.gsscene
@@ -50,10 +50,9 @@ def run(options: argparse.Namespace) -> int:
     if done.n_given_ids:
         tell("{} with the GlobalId of the building model", counted(done.n_given_ids, "panel"))
     if done.empty:
-        names = ", ".join(done.empty[:SHOWN]) + (" ..." if len(done.empty) > SHOWN else "")
         tell(
             "{} without Gaussians of their own ({}): no photo showed them, or the method knows no panels",
             counted(len(done.empty), "panel"),
-            names,
+            first_few(done.empty, SHOWN),
         )
     return 0

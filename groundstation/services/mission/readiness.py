@@ -23,7 +23,7 @@ from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.items import photos_that_fit
 from planning.aircraft.camera_use import camera_use_of
 from planning.base.findings import Finding, Severity, is_flyable
-from planning.base.messages import Message, glue, say
+from planning.base.messages import Message, first_few, glue, say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.checks import check_case
 from planning.checks.case import Case, pose_of
@@ -368,7 +368,7 @@ def _better_times(report: SunReport, n_now: int, blinded_now_s: float) -> tuple[
         return glue(), glue()
     spoiled = [each.spoiled for each in times.sorties if each.spoiled is not None]
     texts = [f"{report.day.track.time(each.start_s):%H:%M}" for each in times.sorties if each.start_s is not None]
-    starts = ", ".join((*texts[:MOST_TIMES], *(["..."] if len(texts) > MOST_TIMES else [])))
+    starts = first_few(texts, MOST_TIMES)
     n_best = sum(float(each.photos[0]) for each in spoiled)
     blinded_s = sum(float(each.blinded_s[0]) for each in spoiled)
     photos = say("; with take-off at {} it would be {:.0f}", starts, n_best) if n_best < n_now else glue()

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from planning.base.jit import chunks
-from planning.base.messages import glue, say
+from planning.base.messages import first_few, glue, say
 from planning.base.progress import Monitor
 from planning.geo.bvh import OCCLUSION_OFFSET_M, LineOfSight, line_of_sight
 from planning.geo.mesh import TriangleMesh
@@ -303,5 +303,4 @@ def _counted(what: str, n: int, names: Sequence[str] = ()) -> list[str]:
     """A note with a count and the first few names; none where there is nothing to count."""
     if n == 0:
         return []
-    more = ", ..." if len(names) > MAX_NAMED else ""
-    return [glue(what, f": {n}", f" ({', '.join(names[:MAX_NAMED])}{more})" if names else "")]
+    return [glue(what, f": {n}", glue(" (", first_few(names, MAX_NAMED), ")") if names else "")]

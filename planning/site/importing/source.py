@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.messages import glue, joined, say
+from planning.base.messages import first_few, say
 from planning.geo.frames import Vec3
 from planning.geo.mesh import TriangleMesh
 from planning.site.importing.ground import Terrain
@@ -34,12 +34,11 @@ def left_out_notes(names: Sequence[str]) -> tuple[str, ...]:
     if not names:
         return ()
     different = list(dict.fromkeys(name or say("without an identifier") for name in names))
-    more = ", ..." if len(different) > MAX_NAMED else ""
     return (
         say(
             "left out, because they are broken (such as outlines of fewer than three points) or not read: {} ({})",
             len(names),
-            glue(joined(", ", different[:MAX_NAMED]), more),
+            first_few(different, MAX_NAMED),
         ),
     )
 

@@ -121,10 +121,6 @@ def _fresnel(picture: Picture) -> Tensor:
     return torch.where(came > LEAST_LIGHT, went / came.clamp(min=LEAST_LIGHT), 0.0).clamp(0.0, 1.0)
 
 
-def _depth(picture: Picture) -> Tensor:
-    return picture.raster.surface_depths_m
-
-
 def _normals(picture: Picture) -> Tensor:
     lengths = picture.normals.norm(dim=-1, keepdim=True)
     return torch.where(lengths > 0.25, picture.normals / lengths.clamp(min=0.25), 0.0)
@@ -138,7 +134,7 @@ OF_PICTURE: dict[str, Callable[[Picture], Tensor]] = {
     "reflectivity": lambda picture: picture.reflectivity,
     "alpha": lambda picture: picture.raster.alphas,
     "normals": _normals,
-    "depth": _depth,
+    "depth": lambda picture: picture.raster.surface_depths_m,
     "panels": lambda picture: picture.panels.float(),
 }
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from planning.base.effects import Assessment, Decision, EffectSetting, decide
-from planning.base.messages import say
+from planning.base.messages import first_few, say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import TriangleMesh
 from planning.geo.ray_casting import RayCaster
@@ -182,6 +182,10 @@ class OwnExposures:
         )
 
 
+SHOWN_NAMES = 5
+"""Of photos, in a reason."""
+
+
 @dataclass(frozen=True, slots=True)
 class OutlierPhotos:
     """Leave photos out that do not show what the others show of the same points."""
@@ -195,13 +199,9 @@ class OutlierPhotos:
         names, n_photos = scene
         if not names:
             return Assessment(0.0, say("all photos that were looked at show the same points"), 0.0)
-        shown = ", ".join(names[:SHOWN_NAMES]) + (" ..." if len(names) > SHOWN_NAMES else "")
+        shown = first_few(names, SHOWN_NAMES)
         reason = say("where {} of {} photos were taken, the others saw something else: {}", len(names), n_photos, shown)
         return Assessment(len(names) / n_photos, reason, 0.0)
-
-
-SHOWN_NAMES = 5
-"""Of photos, in a reason."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
