@@ -61,6 +61,32 @@ def plan_sha256(plan: Plan) -> str:
     return hashlib.sha256(json.dumps(plan_to_json(plan), indent=1, allow_nan=False).encode()).hexdigest()
 
 
+SAME_M = 1e-3
+"""Files keep more digits of positions and errors."""
+
+
+def is_of_plan(flight: Flight, plan: Plan) -> bool:
+    """Whether a flight was flown with a plan: by its checksum, or by its photos being as far from the plan's views.
+
+    A later version of the program may write the same plan in other words. The report says how far each photo was from
+    its view: another plan's views are elsewhere.
+    """
+    if flight.plan_sha256 and flight.plan_sha256 == plan_sha256(plan):
+        return True
+    views = () if flight.report is None else flight.report.views
+    planned = {view.id: view.position_enu_m for view in plan.viewpoints}
+    if [view.view_id for view in views] != [name for sortie in plan.sorties for name in sortie.viewpoint_ids]:
+        return False
+    off_m = []
+    for view in views:
+        if view.record is not None and view.photo is not None and view.position_error_m is not None:
+            photos = flight.sorties[view.record].photos if 0 <= view.record < len(flight.sorties) else ()
+            if not 0 <= view.photo < len(photos):
+                return False  # a file that was edited by hand
+            off_m.append(math.dist(photos[view.photo].position_enu_m, planned[view.view_id]) - view.position_error_m)
+    return bool(off_m) and max(map(abs, off_m)) <= SAME_M
+
+
 Point = tuple[float | None, float | None, float | None]
 
 

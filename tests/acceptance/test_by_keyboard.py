@@ -124,7 +124,9 @@ def test_from_the_start_page_to_the_report_of_a_simulated_flight_by_keyboard_alo
     pilot.until(lambda: page.n_photos() >= 5, "photos are taken")
     keys.reach("Land")
     pilot.see("in flight")
-    pilot.until(lambda: bar.text().startswith("Done: flown. Next: read the photos"), "the flight is over")
+    pilot.until(
+        lambda: bar.text().startswith("Done: flown; ") and "Next: read the photos" in bar.text(), "the flight is over"
+    )
     pilot.idle()
     keys.reach("Messages")
     pilot.see("report")

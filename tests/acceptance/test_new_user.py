@@ -76,7 +76,9 @@ def test_from_the_start_page_to_the_report_of_a_simulated_flight(own_garbage, pi
     page = pilot.controller.window.tab("fly")
     pilot.until(lambda: page.n_photos() >= 5, "photos are taken")
     mouse.look("in flight")
-    pilot.until(lambda: bar.text().startswith("Done: flown. Next: read the photos"), "the flight is over")
+    pilot.until(
+        lambda: bar.text().startswith("Done: flown; ") and "Next: read the photos" in bar.text(), "the flight is over"
+    )
     pilot.idle()
     mouse.look("report")
     assert pilot.reads("Photos: {0} of {1} views; sections covered: {2} of {3} planned ({4:.1f} %)")

@@ -32,8 +32,10 @@ from groundstation.services.jobs.runner import JobContext
 from groundstation.services.mission.readiness import TooLong, split_to_fit, too_long
 from groundstation.services.plan.top_up import flown_plan, resume_flight, top_up_flight
 from groundstation.services.project.document import Document, PlanEntry
+from groundstation.services.project.steps import Flown, flown_records
 from groundstation.services.units import minutes_text
 from missions.flight.flight_file import flight_of
+from missions.flight.outcome import FlightReport
 from missions.flight.record import FlightRecord
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.resume import Resumed
@@ -184,7 +186,9 @@ class AfterFlight(QObject):
         super().__init__(parent)
         self._context = context
         self._flown: dict[int, tuple[Plan, tuple[FlightRecord, ...]]] = {}
+        self._reported: dict[int, tuple[Plan, Flown]] = {}
         self._last: tuple[Plan, SiteModel] | None = None
+        self._topped_up: Plan | None = None
         self._battery: float | None = None
         self._on_board: tuple[Plan, float] | None = None
 
@@ -198,6 +202,31 @@ class AfterFlight(QObject):
         self._flown[id(plan)] = (plan, (*self.flown(plan), record))
         self._last, self._battery = (plan, site_model), battery
         self._on_board = None
+
+    def take_report(self, plan: Plan, report: FlightReport) -> None:
+        """A report on all that was flown of a plan since the program was started."""
+        shown, known = self._context.document.current, self._reported.get(id(plan))
+        flown = None if known is None else known[1]
+        if flown is None and shown is not None and shown.plan is plan:
+            flown = self._context.milestones.flown  # on other days
+        self._take_flown(plan, (flown or Flown({})).also(report))
+
+    def tell_flown(self) -> None:
+        """Note what was flown of the plan that is shown."""
+        shown = self._context.document.current
+        known = None if shown is None else self._reported.get(id(shown.plan))
+        if known is not None:
+            self._context.note(flown=known[1])
+
+    def leave_rest(self) -> None:
+        """What the last top-up found missing is not worth a flight."""
+        plan, shown = self._topped_up, self._context.document.current
+        if plan is not None and shown is not None and shown.plan is plan and self._context.milestones.flown is not None:
+            self._take_flown(plan, replace(self._context.milestones.flown, is_enough=True))
+
+    def _take_flown(self, plan: Plan, flown: Flown) -> None:
+        self._reported[id(plan)] = plan, flown
+        self.tell_flown()
 
     def correct(self, plan: Plan, number: int, record: FlightRecord) -> None:
         """A sortie, from 1, as the vehicle's own log tells its last flight: what the link lost is in it."""
@@ -222,13 +251,13 @@ class AfterFlight(QObject):
         flown = self._flown_here()
         if flown is None:
             return
-        plan, site_model, records = flown
-        battery = self._battery
+        plan, site_model, read = flown
+        self._topped_up, battery = plan, self._battery
         # Full ones come into it where the one on board does not suffice.
         request = TopUpRequest(battery=battery, n_batteries=None if battery is None else MOST_BATTERIES)
 
         def work(context: JobContext) -> tuple[TopUp, tuple[Finding, ...]]:
-            found = flown_plan(flight_of(plan, site_model, records), plan, site_model)
+            found = flown_plan(flight_of(plan, site_model, read()), plan, site_model)
             return top_up_flight(found, request, monitor=context)
 
         def done(result: tuple[TopUp, tuple[Finding, ...]]) -> None:
@@ -237,7 +266,10 @@ class AfterFlight(QObject):
                 self._context.say(finding.severity, self._context.localized(finding.message))
             if found.wanted == 0:
                 self._context.say(Severity.OK, self.tr("Nothing is missing: the photos show all that was planned."))
-            elif found.is_negligible and found.plan is not None:
+                self.leave_rest()
+            elif found.plan is None:
+                self.leave_rest()  # why is among the findings
+            elif found.is_negligible:
                 self.restFound.emit(found)
             else:
                 self.take(found)
@@ -268,10 +300,10 @@ class AfterFlight(QObject):
         flown = self._flown_here()
         if flown is None:
             return
-        plan, site_model, records = flown
+        plan, site_model, read = flown
 
         def work(context: JobContext) -> Resumed:
-            found = flown_plan(flight_of(plan, site_model, records), plan, site_model)
+            found = flown_plan(flight_of(plan, site_model, read()), plan, site_model)
             return resume_flight(found, monitor=context)
 
         def done(rest: Resumed) -> None:
@@ -282,17 +314,29 @@ class AfterFlight(QObject):
 
         self._context.start(self.tr("Resume sortie"), work, done)
 
-    def _flown_here(self) -> tuple[Plan, SiteModel, tuple[FlightRecord, ...]] | None:
-        """The plan that was flown last, the site as it is now, and all that was flown of the plan."""
-        site_model = self._context.document.site
-        if self._last is None or site_model is None:
+    def _flown_here(self) -> tuple[Plan, SiteModel, Callable[[], tuple[FlightRecord, ...]]] | None:
+        """The plan that is shown, where it was flown, else that flown last; the site as it is now; what reads the rest.
+
+        What was flown on other days is in the project's files.
+        """
+        document, folder = self._context.document, self._context.session.folder
+        site_model, entry = document.site, document.current
+        if site_model is None:
+            return None
+        if entry is not None and self._context.milestones.flown is not None:
+            shown, known = entry.plan, self.flown(entry.plan)
+            if known:
+                return shown, site_model, lambda: known
+            if folder is not None:
+                return shown, site_model, lambda: flown_records(folder, shown)
+        if self._last is None:
             return None
         plan, flown_over = self._last
         if not is_same_place(flown_over.site, site_model.site):
             text = self.tr("This flight was over the site {0}: open its project first.").format(flown_over.site.name)
             self._context.say(Severity.WARNING, text)
             return None
-        return plan, site_model, self.flown(plan)
+        return plan, site_model, lambda: self.flown(plan)
 
     def _add_plan(self, title: str, plan: Plan, text: str) -> None:
         document: Document = self._context.document

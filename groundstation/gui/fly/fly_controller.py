@@ -247,6 +247,7 @@ class FlyController(QObject):
         if self.plan is not self._shown_plan:
             self._shown_plan = self.plan
             self._assign()
+            self.after.tell_flown()
         self._tell_state()
 
     def _assign(self) -> None:
@@ -269,7 +270,7 @@ class FlyController(QObject):
             state = FlightState.BUSY
         elif self.is_connected and view is not None and (self.is_for_shown_plan or view.state.is_armed):
             state = flight_state(view)
-        self._context.note(flight=state)
+        self._context.note(flight=state, sortie=self.number)
 
     # Connecting
 
@@ -353,9 +354,22 @@ class FlyController(QObject):
         self.stateChanged.emit()
 
     def connect_vehicle(self) -> None:
-        """Prepare the sortie, then open the link."""
-        if not self.is_connected and self._is_free(self.selected):
-            self._prepare(self.selected, self._connect)
+        """Prepare the sortie, then open the link; one that was opened for another plan is closed first."""
+        aircraft = self.selected
+        if aircraft.flight is not None and not aircraft.flies(self.plan) and not aircraft.is_in_flight:
+            aircraft.connects_again = True
+            self.disconnect_vehicle()
+        elif aircraft.flight is None and self._is_free(aircraft):
+            self._prepare(aircraft, self._connect)
+
+    def choose_next_sortie(self) -> None:
+        """Make the first sortie that nobody has begun the next one, on the aircraft that the plan gives it."""
+        flown, plan = self._context.milestones.flown, self.plan
+        if flown is not None and flown.sorties_left and plan is not None:
+            number = flown.sorties_left[0]
+            self.select(plan.sorties[number - 1].aircraft or self._selected)
+            if self.number != number:
+                self.set_sortie(number)
 
     def disconnect_vehicle(self) -> None:
         """Close the link; the aircraft goes on by itself."""
@@ -578,6 +592,9 @@ class FlyController(QObject):
                 self._tell(aircraft, Severity.ERROR, event.text, "link")
             aircraft.flight = None
             self._state_changed(aircraft)
+            if aircraft.connects_again:
+                aircraft.connects_again = False
+                self._prepare(aircraft, self._connect)
         if aircraft is self.selected:
             self.linkChanged.emit(event.link)
 
@@ -586,9 +603,8 @@ class FlyController(QObject):
         if event.record is not None:
             case = active.sortie.case
             self.after.add(case.plan, case.site_model, event.record, active.battery)
-            flown = {each.sortie for each in self.after.flown(case.plan) if each.duration_s is not None}
-            if case.plan is self.plan and len(flown) >= len(case.plan.sorties):
-                self._context.note(is_flown=True)
+            if event.report is not None:
+                self.after.take_report(case.plan, event.report)
             # Only a simulated vehicle tells with which effects it flew.
             if case.plan is self.plan and event.path is not None and event.record.effects:
                 self._context.note(simulated=event.path)
@@ -624,6 +640,8 @@ class FlyController(QObject):
             if aircraft.active is active and ended.record is not None:
                 active.ended = ended
                 self.after.correct(case.plan, number, ended.record)
+                if ended.report is not None:
+                    self.after.take_report(case.plan, ended.report)
                 self._say(Severity.OK, say("The report is made from the vehicle's own log."))
                 if aircraft is self.selected:
                     self.flightEnded.emit(ended)

@@ -333,7 +333,7 @@ class FlyPage(GradualTab):
         return (*self.buttons.flight_actions(), self._book, *self._view_actions)
 
     def take_step(self, act: Act) -> None:
-        """Connect, upload, or start, each as its own button does."""
+        """Connect, upload, start, and what comes after the flight, each as its own button does."""
         match act:
             case Act.CONNECT:
                 self._connect_vehicle()
@@ -341,6 +341,12 @@ class FlyPage(GradualTab):
                 self.buttons.button(Request.UPLOAD).click()
             case Act.TAKE_OFF:
                 self.buttons.button(Request.START).click()
+            case Act.NEXT_SORTIE:
+                self.controller.choose_next_sortie()
+            case Act.RESUME_SORTIE:
+                self.controller.after.resume_sortie()
+            case Act.TOP_UP:
+                self.controller.after.top_up()
             case _:
                 pass
 
@@ -486,6 +492,8 @@ class FlyPage(GradualTab):
     def _rest_found(self, found: TopUp) -> None:
         if self.questions.confirm_closing_flight(self._shared_view.window(), found):
             self.controller.after.take(found)
+        else:
+            self.controller.after.leave_rest()
 
     def _request(self, request: Request) -> None:
         if request is not Request.START or self._may_start():

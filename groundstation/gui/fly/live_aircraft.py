@@ -103,6 +103,8 @@ class LiveAircraft:
         Of the events of its flight; 0 for none.
     job_id
         Of the job that prepares its sortie.
+    connects_again
+        As soon as its link is closed, for the plan that is shown then.
     """
 
     number: int
@@ -114,6 +116,7 @@ class LiveAircraft:
     flight_id: int = 0
     job_id: int = 0
     active: ActiveFlight | None = None
+    connects_again: bool = False
 
     @property
     def view(self) -> LiveView | None:

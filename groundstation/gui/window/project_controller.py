@@ -423,12 +423,15 @@ class ProjectController(QObject):
 
     def _look_at_steps(self, folder: Path) -> None:
         """Tick what was done in a project on other days."""
+        current = self.context.document.current
+        plan = None if current is None else current.plan
 
         def done(found: FoundFiles) -> None:
-            if self.context.session.folder == folder:
+            shown = self.context.document.current
+            if self.context.session.folder == folder and (None if shown is None else shown.plan) is plan:
                 self.context.note(**{field.name: getattr(found, field.name) for field in fields(found)})
 
-        self.context.start(self.tr("Look at the project"), lambda _context: steps_in_folder(folder), done)
+        self.context.start(self.tr("Look at the project"), lambda _context: steps_in_folder(folder, plan), done)
 
     def _or_warn(self, action: Callable[[], None]) -> bool:
         """Do something whose failure the user is told of; True where it was done."""

@@ -54,11 +54,9 @@ def allowed_requests(
 
 
 def flight_state(view: LiveView) -> FlightState:
-    """Which step of a flight comes next; APART once it has landed."""
+    """Which step of a flight comes next; after a landing the mission can be sent again."""
     if view.state.is_armed:
         return FlightState.IN_AIR
-    if view.phase is Phase.ENDED:
-        return FlightState.APART
     if Request.START in view.may:
         return FlightState.READY
     if view.phase in (Phase.CHECKING, Phase.READY):

@@ -11,7 +11,7 @@ from typing import Any
 from groundstation.services.plan.planning import finding_summary
 from groundstation.services.project.input_files import read_input_plan, read_input_site
 from groundstation.services.project.project_file import check_not_index
-from missions.flight.flight_file import Flight, flight_of, plan_sha256, read_flight
+from missions.flight.flight_file import Flight, flight_of, is_of_plan, read_flight
 from missions.flight.logs.read import is_log, read_log
 from missions.flight.matching import Matching, match_flight, taken_poses
 from missions.flight.outcome import Reason
@@ -87,7 +87,7 @@ def flown_plan(flight: Flight, plan: Plan, site_model: SiteModel) -> FlownPlan:
         )
     matching = match_flight(plan, flight.sorties)
     n_photos = sum(len(record.photos) for record in flight.sorties)
-    is_other = bool(flight.plan_sha256) and flight.plan_sha256 != plan_sha256(plan)
+    is_other = bool(flight.plan_sha256) and not is_of_plan(flight, plan)
     if is_other or (n_photos and not any(match.photo is not None for match in matching.views)):
         found = (
             say("its plan has another checksum")

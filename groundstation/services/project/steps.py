@@ -6,15 +6,19 @@ is done, what is next, and which one thing leads there. `undone` says what an ed
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import contextlib
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
 from groundstation.services.project.document import Document
-from missions.flight.flight_file import read_flight
+from missions.flight.flight_file import Flight, is_of_plan, read_flight
+from missions.flight.outcome import FlightReport, Reason
+from missions.flight.record import FlightRecord
 from planning.base.errors import InputError
 from planning.base.messages import Message, say
+from planning.plan import Plan
 from planning.site.records import SiteModel
 
 
@@ -51,6 +55,9 @@ class Act(StrEnum):
     CONNECT = "connect"
     UPLOAD = "upload"
     TAKE_OFF = "take-off"
+    NEXT_SORTIE = "next-sortie"
+    RESUME_SORTIE = "resume-sortie"
+    TOP_UP = "top-up"
     FROM_PHOTOS = "from-photos"
     READ_PHOTOS = "read-photos"
     RENDER_PHOTOS = "render-photos"
@@ -74,6 +81,52 @@ class FlightState(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
+class Flown:
+    """What flights of one plan brought together.
+
+    Parameters
+    ----------
+    views
+        Sortie, from 1, and what became of each view, by its identifier.
+    is_enough
+        What is missing is not worth a flight.
+    """
+
+    views: Mapping[str, tuple[int, Reason]]
+    is_enough: bool = False
+
+    def also(self, report: FlightReport) -> Flown:
+        """With a later flight: a view that has a photo keeps it."""
+        views = dict(self.views)
+        for view in report.views:
+            _, known = views.get(view.view_id, (0, Reason.NOT_FLOWN))
+            if known is not Reason.TAKEN and (view.reason is not Reason.NOT_FLOWN or view.view_id not in views):
+                views[view.view_id] = view.sortie, view.reason
+        return Flown(views, self.is_enough)
+
+    @property
+    def n_taken(self) -> int:
+        """Views with a photo, also with one that only the camera told of."""
+        return sum(reason in (Reason.TAKEN, Reason.REPORT_LOST) for _, reason in self.views.values())
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether nothing is left to fly."""
+        return self.is_enough or self.n_taken == len(self.views)
+
+    @property
+    def is_cut_short(self) -> bool:
+        """Whether a sortie ended before its last views, or nobody saw it reach them."""
+        return any(reason in (Reason.FLIGHT_ENDED, Reason.NOT_RECORDED) for _, reason in self.views.values())
+
+    @property
+    def sorties_left(self) -> tuple[int, ...]:
+        """Those that nobody has begun."""
+        begun = {sortie for sortie, reason in self.views.values() if reason is not Reason.NOT_FLOWN}
+        return tuple(sorted({sortie for sortie, _ in self.views.values()} - begun))
+
+
+@dataclass(frozen=True, slots=True)
 class Milestones:
     """What has happened.
 
@@ -83,8 +136,10 @@ class Milestones:
         Of the site and of the plan that is shown; None without one.
     n_errors, n_warnings
         What the pre-flight check found in the plan as it is; no number of errors where it has not been checked.
-    flight, is_flown
-        Where its flight stands, and whether all of its sorties have landed.
+    flight, sortie
+        Where its flight stands, and which of its sorties, from 1, is to be flown next.
+    flown
+        What was flown of it; None for nothing.
     simulated
         File of the flight that was simulated last; None where there is none: its photos can be rendered.
     n_photos
@@ -100,7 +155,8 @@ class Milestones:
     n_warnings: int = 0
     is_exported: bool = False
     flight: FlightState = FlightState.APART
-    is_flown: bool = False
+    sortie: int = 1
+    flown: Flown | None = None
     simulated: Path | None = None
     n_photos: int = 0
     data_set: Path | None = None
@@ -198,28 +254,53 @@ def _mission(now: Milestones) -> Guidance:
 
 
 def _fly(now: Milestones) -> Guidance:
+    flown = now.flown
     if now.n_viewpoints is None and now.flight is FlightState.APART:
         return _plan_first(now)
-    if now.is_flown and now.flight in (FlightState.APART, FlightState.CONNECTED):
-        return Guidance(True, say("flown"), say("read the photos of the flight"), say("To Photos"), Act.TO_PHOTOS)
+    is_done = flown is not None and flown.is_whole
+    if flown is not None and now.flight in (FlightState.APART, FlightState.CONNECTED):
+        further = _after_flight(flown, now.sortie)
+        if further is not None:
+            return further
+    photos = "" if flown is None else _photos_taken(flown)
     match now.flight:
         case FlightState.BUSY:
-            return Guidance(now.is_flown, "", say("wait for the vehicle"), "", None)
+            return Guidance(is_done, photos, say("wait for the vehicle"), "", None)
         case FlightState.CONNECTED:
-            done, further = say("connected"), say("send the mission to the vehicle")
-            return Guidance(now.is_flown, done, further, say("Upload"), Act.UPLOAD)
+            done, further_text = photos or say("connected"), say("send the mission to the vehicle")
+            return Guidance(is_done, done, further_text, say("Upload"), Act.UPLOAD)
         case FlightState.ON_BOARD:
-            further = say("wait until every line of the list before take-off is well, or put it right")
-            return Guidance(now.is_flown, say("the mission is on board"), further, "", None)
+            further_text = say("wait until every line of the list before take-off is well, or put it right")
+            return Guidance(is_done, say("the mission is on board"), further_text, "", None)
         case FlightState.READY:
-            return Guidance(
-                now.is_flown, say("ready to take off"), say("start; it asks first"), say("Start"), Act.TAKE_OFF
-            )
+            return Guidance(is_done, say("ready to take off"), say("start; it asks first"), say("Start"), Act.TAKE_OFF)
         case FlightState.IN_AIR:
-            return Guidance(now.is_flown, say("in the air"), say("watch the flight until it has landed"), "", None)
+            return Guidance(is_done, say("in the air"), say("watch the flight until it has landed"), "", None)
         case _:
             pass
-    return Guidance(False, "", say("connect; a simulation needs no aircraft"), say("Connect"), Act.CONNECT)
+    return Guidance(False, photos, say("connect; a simulation needs no aircraft"), say("Connect"), Act.CONNECT)
+
+
+def _after_flight(flown: Flown, sortie: int) -> Guidance | None:
+    """What follows a landing; None where the sortie that is chosen is still to be flown."""
+    photos = _photos_taken(flown)
+    if flown.is_whole:
+        further = say("read the photos of the flight")
+        return Guidance(True, say("flown; {}", photos), further, say("To Photos"), Act.TO_PHOTOS)
+    if flown.is_cut_short:
+        further = say("change the battery and fly the rest; or read the photos that there are")
+        return Guidance(False, say("landed early; {}", photos), further, say("Resume sortie"), Act.RESUME_SORTIE)
+    if sortie in flown.sorties_left:
+        return None
+    if flown.sorties_left:
+        further = say("fly sortie {}, with a full battery", flown.sorties_left[0])
+        return Guidance(False, photos, further, say("Next sortie"), Act.NEXT_SORTIE)
+    further = say("fly once more for what is missing; or read the photos that there are")
+    return Guidance(False, say("flown; {}", photos), further, say("Top-up flight"), Act.TOP_UP)
+
+
+def _photos_taken(flown: Flown) -> Message:
+    return say("{} of {} photos taken", flown.n_taken, len(flown.views))
 
 
 def _photos(now: Milestones) -> Guidance:
@@ -299,7 +380,7 @@ def undone(now: Milestones, before: Document, after: Document) -> Milestones:
     elif before.current is not entry and (
         entry is None or before.current is None or before.current.plan is not entry.plan
     ):
-        now = replace(now, n_errors=None, is_exported=False, is_flown=False, simulated=None)
+        now = replace(now, n_errors=None, is_exported=False, flown=None, simulated=None)
     elif before.site is not site:
         now = replace(now, n_errors=None)
     n_panels = None if site is None else site.site.n_panels
@@ -318,30 +399,55 @@ class FoundFiles:
     """What a project's folder has of steps that were done on another day; see `Milestones`."""
 
     is_exported: bool
-    is_flown: bool
+    flown: Flown | None
     simulated: Path | None
     data_set: Path | None
     model: Path | None
 
 
-def steps_in_folder(folder: Path) -> FoundFiles:
-    """Look at the files of a project; what cannot be read counts as not there."""
+def steps_in_folder(folder: Path, plan: Plan | None) -> FoundFiles:
+    """Look at the files of a project, whose current plan this is; what cannot be read counts as not there."""
+    flights = list(_flights(folder))
+    flown: Flown | None = None
+    for _, flight in _of_plan(flights, plan):
+        if flight.report is not None:
+            flown = (flown or Flown({})).also(flight.report)
     return FoundFiles(
         is_exported=bool(_files(folder, "missions/*")),
-        is_flown=bool(_files(folder, "flights/*.json")),
-        simulated=_simulated(_files(folder, "flights/*.json")),
+        flown=flown,
+        simulated=_simulated(flights),
         data_set=_newest_folder(folder, "*/dataset.json"),
         model=_newest_folder(folder, "models/*/model.json"),
     )
 
 
-def _simulated(flights: Sequence[Path]) -> Path | None:
+def flown_records(folder: Path, plan: Plan) -> tuple[FlightRecord, ...]:
+    """What was flown of a plan by the flight files of a project, each sortie once.
+
+    A file that was written later on a connection holds what was flown before.
+    """
+    found = {}
+    for _, flight in _of_plan(list(_flights(folder)), plan):
+        found.update({(each.sortie, each.duration_s, each.photos): each for each in flight.sorties})
+    return tuple(found.values())
+
+
+def _flights(folder: Path) -> Iterator[tuple[Path, Flight]]:
+    for path in _files(folder, "flights/*.json"):
+        with contextlib.suppress(InputError):
+            yield path, read_flight(path)
+
+
+def _of_plan(flights: Sequence[tuple[Path, Flight]], plan: Plan | None) -> list[tuple[Path, Flight]]:
+    return [] if plan is None else [each for each in flights if is_of_plan(each[1], plan)]
+
+
+def _simulated(flights: Sequence[tuple[Path, Flight]]) -> Path | None:
     """The newest flight, where it was simulated: then its file says with which effects."""
-    try:
-        is_simulated = bool(flights) and any(record.effects for record in read_flight(flights[-1]).sorties)
-    except InputError:
+    if not flights:
         return None
-    return flights[-1] if is_simulated else None
+    path, flight = flights[-1]
+    return path if any(record.effects for record in flight.sorties) else None
 
 
 def _newest_folder(folder: Path, pattern: str) -> Path | None:

@@ -17,7 +17,7 @@ from groundstation.services.fly.flight import DONE, REFUSALS
 from groundstation.services.fly.options import ConnectionChoice, LinkKind, choice_path, read_choice
 from groundstation.services.messages import translation
 from groundstation.services.project.document import Document, ItemKind, PlanEntry
-from groundstation.services.project.steps import Act, FlightState, Step, guidance
+from groundstation.services.project.steps import Act, FlightState, Step, guidance, is_done
 from groundstation.services.settings import Language
 from groundstation.services.units import UnitSystem
 from groundstation.vehicle.preflight import Remedy
@@ -150,7 +150,7 @@ def test_a_flight_is_watched_to_its_report_without_a_gap_in_the_window(applicati
     page.report.top_up.click()
     turn_until_idle(application, controller)
     assert "Nothing is missing" in controller.window.messages.texts()
-    assert controller.context.milestones.is_flown
+    assert controller.context.milestones.flown.is_whole
 
 
 @pytest.mark.slow
@@ -177,6 +177,10 @@ def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(applicatio
     turn_until(application, lambda: has_landed(page))
     missing = {row[0] for row in page.report.rows() if row[2] != "taken"}
     assert missing
+    bar = controller.window.next_step
+    turn_until(application, lambda: bar.text().startswith(f"Done: landed early; {6 - len(missing)} of 6 photos taken."))
+    assert bar.button.text() == "Resume sortie"
+    assert not is_done(Step.FLY, controller.context.milestones)
     page.report.top_up.click()
     turn_until_idle(application, controller)
     plans = controller.context.document.plans
@@ -187,16 +191,19 @@ def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(applicatio
     # The plan that is shown is another one now: what is uploaded and what is seen must not differ.
     turn_until(application, lambda: "for another plan" in page._phase.text())
     assert not page.buttons.button(Request.UPLOAD).isEnabled()
-    page.connection.button.click()
-    turn_until(application, lambda: not page.controller.is_connected)
-    connect(application, page)
+    assert bar.button.text() == "Connect"
+    click_on(controller.window, bar.button)
+    turn_until(application, lambda: page.buttons.button(Request.UPLOAD).isEnabled())
     assert len(page.strip.states()) == len(plans[-1].plan.viewpoints)
     turn_until(application, lambda: page.controller.active.battery is not None)
     assert page.controller.active.battery == pytest.approx(left, abs=0.011)
     assert "as the flight before left it" in page.notes.texts()
     page.connection.button.click()
     turn_until(application, lambda: not page.controller.is_connected)
-    page.controller.after.resume_sortie()
+    first = controller.context.document.plans[0]
+    controller.context.change("Show", replace(controller.context.document, current_plan_id=first.id))
+    assert bar.button.text() == "Resume sortie", "what was flown of it is known still"
+    click_on(controller.window, bar.button)
     turn_until_idle(application, controller)
     rest = controller.context.document.plans[-1]
     assert rest.title == "Rest of sortie 1"
@@ -855,7 +862,7 @@ def test_a_flight_that_was_disconnected_in_the_air_is_not_flown(application, con
         page.connection.button.click()
     turn_until(application, lambda: has_landed(page))
     assert len(page.controller.active.ended.record.photos) < 6
-    assert not controller.context.milestones.is_flown
+    assert controller.context.milestones.flown.is_cut_short
 
 
 @pytest.mark.slow

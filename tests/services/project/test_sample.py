@@ -14,9 +14,9 @@ def test_the_sample_is_a_project_in_which_every_step_is_done(tmp_path):
     assert project.document.site.site.n_panels > 0
     assert project.document.current is not None
     assert project.notes == ()
-    found = steps_in_folder(folder)
+    found = steps_in_folder(folder, project.document.current.plan)
     assert found.is_exported
-    assert found.is_flown
+    assert found.flown.is_whole
     assert found.data_set == folder / "dataset"
     assert found.model is not None
     assert list((folder / "photos").glob("*.JPG"))
