@@ -18,6 +18,12 @@ from planning.photos.record import PhotoMetadata
 
 SUFFIXES = (".jpg", ".jpeg")
 
+OTHER_PICTURES = (".png", ".tif", ".tiff", ".webp", ".bmp")
+"""Pictures that can be decoded, but say nothing of themselves: of use where their poses are known from elsewhere."""
+
+UNDECODED = (".dng", ".heic", ".heif", ".arw", ".cr2", ".cr3", ".nef", ".raf", ".rw2", ".orf")
+"""Photos of formats that are not read."""
+
 N_THREADS = 8
 """Cards and network folders answer several requests at once; reading the metadata itself takes less than 1 ms."""
 
@@ -33,15 +39,22 @@ class PhotoFolder:
     findings: tuple[Finding, ...]
 
 
-def read_photos(folder: Path, monitor: Monitor = QUIET) -> PhotoFolder:
+def read_photos(folder: Path, monitor: Monitor = QUIET, *, posed_elsewhere: bool = False) -> PhotoFolder:
     """All JPEG photos in a folder and the folders in it.
+
+    Parameters
+    ----------
+    posed_elsewhere
+        Whether poses come from elsewhere, so that a folder of other pictures alone will do; they are not read here.
 
     Raises
     ------
     InputError
         The folder is missing, or holds no photo that can be read.
     """
-    paths = _paths(folder)
+    paths = _paths(folder, posed_elsewhere)
+    if not paths:
+        return PhotoFolder((), ())
     photos: list[PhotoMetadata] = []
     findings: list[Finding] = []
     with ThreadPoolExecutor(N_THREADS) as pool:
@@ -68,7 +81,7 @@ def read_photos(folder: Path, monitor: Monitor = QUIET) -> PhotoFolder:
     return PhotoFolder(in_order(photos), tuple(findings))
 
 
-def _paths(folder: Path) -> list[Path]:
+def _paths(folder: Path, posed_elsewhere: bool) -> list[Path]:
     if not folder.is_dir():
         raise InputError(
             say("expected a folder of photos, found a file", place=folder)
@@ -76,19 +89,31 @@ def _paths(folder: Path) -> list[Path]:
             else say("expected a folder of photos, found nothing", place=folder)
         )
     problems: list[OSError] = []
-    paths = [
+    pictures = [
         Path(inside, name)
         for inside, _, names in os.walk(folder, onerror=problems.append)
         for name in names
-        if name.lower().endswith(SUFFIXES) and not name.startswith(".")
+        if name.lower().endswith(SUFFIXES + OTHER_PICTURES + UNDECODED) and not name.startswith(".")
     ]
     if problems:
         raise InputError.say("cannot be read ({})", problems[0].strerror, place=problems[0].filename) from problems[0]
-    if not paths:
+    paths = [path for path in pictures if path.suffix.lower() in SUFFIXES]
+    if paths or (posed_elsewhere and any(is_other_picture(path) for path in pictures)):
+        return sorted(paths)
+    if pictures:
         raise InputError.say(
-            "holds no .jpg photo; name the folder that was copied from the camera's card", place=folder
+            "holds no .jpg photo, but {} of other kinds, the first {}; save them as JPEG with all that the camera "
+            "wrote into them",
+            len(pictures),
+            min(pictures).name,
+            place=folder,
         )
-    return sorted(paths)
+    raise InputError.say("holds no .jpg photo; name the folder that was copied from the camera's card", place=folder)
+
+
+def is_other_picture(path: Path) -> bool:
+    """Whether a file is by its name a picture that can be decoded, but says nothing of itself."""
+    return path.suffix.lower() in OTHER_PICTURES
 
 
 def _photo_or_finding(path: Path) -> PhotoMetadata | Finding:

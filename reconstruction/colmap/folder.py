@@ -370,6 +370,9 @@ FileKind = Literal["bin", "txt"]
 
 FILE_NAMES = ("cameras", "images", "points3D", "rigs", "frames")
 
+USUAL_PLACES = ("sparse/0", "sparse", "0", "colmap/sparse/0", "dense/sparse", "dense/0/sparse")
+"""Of models, in folders of COLMAP, of nerfstudio and of data sets for splats."""
+
 COLMAP_FILE, MAX_LINES = FileLimit("a file of a COLMAP model", 8192 * MIB), 5_000_000
 """A model of ten thousand 20-megapixel photos has about 3 GiB of observations."""
 
@@ -459,11 +462,28 @@ def _check_names(images: Sequence[ColmapImage]) -> None:
 
 
 def _kind(folder: Path) -> FileKind:
-    kinds: tuple[FileKind, ...] = ("bin", "txt")
-    for kind in kinds:
-        if (folder / f"cameras.{kind}").is_file() and (folder / f"images.{kind}").is_file():
-            return kind
-    found = say("a file") if folder.is_file() else "no folder" if not folder.is_dir() else "a folder without them"
+    kind = _kind_in(folder)
+    if kind is not None:
+        return kind
+    within = model_within(folder)
+    if within is not None:
+        raise InputError(
+            say(
+                "expected a COLMAP model (cameras and images as .bin or .txt); this folder has one in {}: name that",
+                within,
+                place=folder,
+            )
+        )
+    if folder.is_file():
+        raise InputError(
+            say(
+                "expected the folder of a COLMAP model (cameras and images as .bin or .txt), found a file; "
+                "Metashape writes one by Export Cameras as Colmap, and nerfstudio's ns-process-data leaves one in "
+                "colmap/sparse/0",
+                place=folder,
+            )
+        )
+    found = say("a folder without them") if folder.is_dir() else say("no folder")
     raise InputError(
         say(
             "expected a COLMAP model (cameras and images as .bin or .txt), found {}; models are often in sparse/0",
@@ -471,6 +491,19 @@ def _kind(folder: Path) -> FileKind:
             place=folder,
         )
     )
+
+
+def _kind_in(folder: Path) -> FileKind | None:
+    kinds: tuple[FileKind, ...] = ("bin", "txt")
+    for kind in kinds:
+        if (folder / f"cameras.{kind}").is_file() and (folder / f"images.{kind}").is_file():
+            return kind
+    return None
+
+
+def model_within(folder: Path) -> Path | None:
+    """The COLMAP model in a folder, where programs leave it; None where there is none."""
+    return next((folder / place for place in USUAL_PLACES if _kind_in(folder / place) is not None), None)
 
 
 def _read(

@@ -274,6 +274,33 @@ def georeference(model: ColmapModel, photos: Sequence[PosedPhoto], seed: int = 0
     return Georeference(similarity, names, residuals, angles, is_inlier, on_a_line, tuple(findings))
 
 
+def named_below(model: ColmapModel, folder: Path) -> ColmapModel:
+    """The model with its images' names as paths below the folder of photos, also where it has them from the root.
+
+    Raises
+    ------
+    InputError
+        An image lies outside the folder: nothing is read or written by such a name.
+    """
+    images = {image.id: replace(image, name=_below(image.name, folder)) for image in model.images.values()}
+    return replace(model, images=images)
+
+
+def _below(name: str, folder: Path) -> str:
+    path = Path(name)
+    if path.is_absolute():
+        roots = (folder.absolute(), folder.resolve())
+        path = next((path.relative_to(root) for root in roots if path.is_relative_to(root)), path)
+    if path.is_absolute() or ".." in path.parts or path == Path():
+        raise InputError.say(
+            "the image '{}' of the COLMAP model does not lie below the folder of photos, {}; name the folder that "
+            "holds all photos of the model",
+            name,
+            folder,
+        )
+    return path.as_posix()
+
+
 def posed_photos(
     model: ColmapModel,
     enu_from_model: Similarity,
@@ -285,8 +312,9 @@ def posed_photos(
     Raises
     ------
     InputError
-        A camera cannot be told in our intrinsics.
+        A camera cannot be told in our intrinsics, or an image lies outside the folder.
     """
+    model = named_below(model, folder)
     lenses = {camera.id: intrinsics_of(camera) for camera in model.cameras.values()}
     times = taken_at or {}
     images = sorted(model.images.values(), key=lambda image: image.name)

@@ -247,7 +247,7 @@ def _prepare(
                 else:
                     kept.append(done)
     if not kept:
-        raise InputError(say("none of the {} photos can be read; the first: {}", len(photos), findings[0].message))
+        raise InputError(say("none of the {} photos can be used; the first: {}", len(photos), findings[0].message))
     monitor.report(say("writing cameras and points"), 0, 1)
     write_records(folder, kept, model.site, points, (bent, hidden), parameters.normal_step)
     return PreparedData(folder, tuple(kept), (bent, hidden), tuple(findings))
@@ -267,7 +267,7 @@ def _photo(
     try:
         stored = read_input_file(photo.path, PICTURE_FILE)
         check_whole(stored, str(photo.path))
-        content = decoded(stored, cv2.IMREAD_COLOR, str(photo.path))
+        content = decoded(stored, cv2.IMREAD_COLOR | cv2.IMREAD_IGNORE_ORIENTATION, str(photo.path))
     except InputError:
         text = say("the picture is damaged, or cannot be decoded; it was left out")
         return Finding(Severity.WARNING, "photo-unreadable", text, photo.name)

@@ -16,7 +16,7 @@ from planning.base.files import read_input_file
 from planning.base.json_file import expect_format, read_json, to_record
 from planning.base.messages import say
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.colmap.folder import read_model
+from reconstruction.colmap.folder import model_within, read_model
 from reconstruction.colmap.georeference import Similarity, posed_photos
 from reconstruction.dataset.layers import unit_normals
 from reconstruction.dataset.prepare import layer_path
@@ -139,10 +139,18 @@ def check_finished(folder: Path) -> Path:
     Raises
     ------
     InputError
-        There is none: the folder is none of these, or was not finished.
+        There is none: the folder is none of these, was not finished, or is a COLMAP model alone.
     """
     path = folder / "dataset.json"
     if not path.is_file():
+        within = model_within(folder)
+        if within is not None:
+            raise InputError.say(
+                "has no dataset.json, but a COLMAP model in {}; 'prepare PHOTOS SITE --colmap' makes a data set of it, "
+                "and where there is no site, 'coarse PHOTOS' makes one of the photos alone",
+                within,
+                place=folder,
+            )
         raise InputError(
             say("has no dataset.json; name a folder that `prepare` or `scene render` has finished", place=folder)
         )

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -96,6 +96,8 @@ class PhotoSet:
         Of each of `photos`.
     unposed
         Photos that do not say enough; none of those that belong to another camera or another site.
+    sizes_px
+        Width and height of every photo that was looked at, by name.
     """
 
     photos: tuple[PosedPhoto, ...]
@@ -103,6 +105,7 @@ class PhotoSet:
     lenses: tuple[Lens, ...]
     unposed: tuple[Unposed, ...]
     findings: tuple[Finding, ...]
+    sizes_px: Mapping[str, tuple[int, int]] = field(default_factory=dict)
 
 
 def pose_photos(
@@ -136,8 +139,9 @@ def pose_photos(
     label = str(folder)
     chosen, findings = of_camera(photos, camera)
     usable, lens_by_path, unposed = _usable(chosen, folder)
+    sizes_px = {name_in(folder, photo): (photo.width_px, photo.height_px) for photo in photos}
     if not usable and posed_elsewhere:
-        return PhotoSet((), (), (), tuple(unposed), findings)
+        return PhotoSet((), (), (), tuple(unposed), findings, sizes_px)
     if not usable:
         raise InputError(
             say(
@@ -161,9 +165,12 @@ def pose_photos(
         for photo, lens, pose in zip(here, lenses, poses, strict=True)
     )
     findings += (*elsewhere, *places.findings, *receiver_findings(here))
-    findings += (*_unposed_findings(unposed, len(chosen)), *_lens_findings(lenses), *_turned(here))
-    return PhotoSet(posed, here, lenses, tuple(unposed), findings)
+    findings += (*unposed_findings(unposed, len(chosen)), *_lens_findings(lenses), *_turned(here))
+    return PhotoSet(posed, here, lenses, tuple(unposed), findings, sizes_px)
 
+
+UNPOSED = "photos-unposed"
+"""Code of the findings about photos without a pose."""
 
 ADVICE = say("use the files as the camera wrote them: programs that edit, send or share photos often take that out")
 
@@ -271,13 +278,14 @@ def _counted(unposed: Sequence[Unposed]) -> str:
     return joined(", ", (say("{} without {}", n, what) for what, n in counts.items())) or say("there are none")
 
 
-def _unposed_findings(unposed: Sequence[Unposed], n_all: int) -> list[Finding]:
+def unposed_findings(unposed: Sequence[Unposed], n_all: int) -> list[Finding]:
+    """What photos without a pose lack, of as many in all."""
     counts = Counter(photo.missing for photo in unposed)
     first = {photo.missing: photo.name for photo in reversed(unposed)}
     return [
         Finding(
             Severity.WARNING,
-            "photos-unposed",
+            UNPOSED,
             say("{} of {} photos do not say {} and get no pose, the first {}; {}", n, n_all, what, first[what], ADVICE),
             "",
             float(n),

@@ -149,6 +149,13 @@ IN_WINDOW = {
     "import it first ('site import', or Site > Import)": QT_TRANSLATE_NOOP(
         "Sentences", "import it first: Site > Import building model"
     ),
+    (
+        "has no dataset.json, but a COLMAP model in {0}; 'prepare PHOTOS SITE --colmap' makes a data set of it, "
+        "and where there is no site, 'coarse PHOTOS' makes one of the photos alone"
+    ): QT_TRANSLATE_NOOP(
+        "Sentences",
+        "has no dataset.json, but a COLMAP model in {0}; the Photos tab makes a data set of its photos",
+    ),
     "has no dataset.json; name a folder that `prepare` or `scene render` has finished": QT_TRANSLATE_NOOP(
         "Sentences", "has no dataset.json; choose the folder of a data set that is finished"
     ),

@@ -16,6 +16,7 @@ from groundstation.services.photos.poses import (
     ChosenPoses,
     RefineRequest,
     choose_poses,
+    described,
     findings_that_hold,
     refined_summary,
 )
@@ -38,7 +39,7 @@ from planning.site.records import Site, SiteModel, require_panels
 from planning.viewpoints.prepare import coverage_model, decide_occlusion
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.photos.coverage import AchievedCoverage, achieved_coverage, distances_m, distances_to_building_m
-from reconstruction.photos.poses import PhotoSet, name_in, pose_photos
+from reconstruction.photos.poses import PhotoSet, pose_photos
 from reconstruction.photos.quality import QualityLimits, QualityReport, check_quality
 
 NO_PANELS = "no-panels"
@@ -131,11 +132,11 @@ def photo_intake(
     ReconstructionError
         Poses are to be refined, and the photos do not fit together.
     """
-    read = read_photos(folder, monitor)
+    read = read_photos(folder, monitor, posed_elsewhere=colmap is not None)
     posed = pose_photos(read.photos, model.site, folder, heights=heights, posed_elsewhere=colmap is not None)
     better = choose_poses(posed, folder, colmap, refine, monitor)
     photos = better.photos
-    metadata = {name_in(folder, photo): photo for photo in read.photos}
+    metadata = described(folder, read.photos, photos)
     counted, occlusion = _coverage_model(model, flown) if model.site.n_panels else (None, None)
     ahead_m = distances_to_building_m(model.building, photos) if counted is None else distances_m(counted, photos)
     quality = check_quality(
@@ -147,7 +148,7 @@ def photo_intake(
     shown = (Finding(Severity.NOTE, NO_PANELS, text),) if coverage is None else coverage.findings
     everything = (
         *read.findings,
-        *findings_that_hold(posed.findings, better),
+        *findings_that_hold(posed, better),
         *better.findings,
         *quality.findings,
         *shown,
@@ -185,7 +186,7 @@ def with_poses(
         raise ValueError("expected poses of the same photos in the same order")
     about_poses = (*intake.posed.findings, *intake.better.findings)
     others = tuple(found for found in intake.findings if found not in about_poses)
-    findings = (*others, *findings_that_hold(intake.posed.findings, better), *better.findings)
+    findings = (*others, *findings_that_hold(intake.posed, better), *better.findings)
     changed = replace(intake, photos=better.photos, better=better, findings=findings)
     return changed if intake.coverage is None else recounted(changed, model, flown, monitor)
 

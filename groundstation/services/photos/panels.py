@@ -16,6 +16,7 @@ from groundstation.services.photos.poses import (
     RefinedOutcome,
     RefineRequest,
     choose_poses,
+    described,
     findings_that_hold,
     refined_summary,
 )
@@ -42,7 +43,7 @@ from reconstruction.panels.solving.facades_file import facades_bytes
 from reconstruction.panels.solving.find import FindParameters, FoundPanels, find_panels
 from reconstruction.panels.solving.record import SolvedFacade
 from reconstruction.photos.decode import colour_picture
-from reconstruction.photos.poses import name_in, pose_photos
+from reconstruction.photos.poses import pose_photos
 
 CORNER_DECIMALS = 4
 """0.1 mm, so that the file reads back as it was."""
@@ -129,7 +130,7 @@ def find_panel_files(
     check_not_index(out)
     check_output(out, [model])
     known_grids = None if grids is None else read_panels_folder(grids)
-    read = read_photos(folder, monitor)
+    read = read_photos(folder, monitor, posed_elsewhere=colmap is not None)
     site_model = read_input_site(model) if kind_of(model) is FileKind.SITE else None
     without_panels = replace(options, panels_required=False)
     source = None if site_model is not None else read_source(model, without_panels, monitor)
@@ -137,7 +138,7 @@ def find_panel_files(
     posed = pose_photos(read.photos, place, folder, heights=heights, posed_elsewhere=colmap is not None)
     better = choose_poses(posed, folder, colmap, refine, monitor)
     photos = better.photos
-    metadata = {name_in(folder, photo): photo for photo in read.photos}
+    metadata = described(folder, read.photos, photos)
 
     def load(photo: PosedPhoto) -> NDArray[np.uint8]:
         return colour_picture(metadata[photo.name])
@@ -157,7 +158,7 @@ def find_panel_files(
         found,
         photos,
         notes,
-        (*read.findings, *findings_that_hold(posed.findings, better), *better.findings, *found.findings),
+        (*read.findings, *findings_that_hold(posed, better), *better.findings, *found.findings),
         better.refined,
     )
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +15,9 @@ from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
-from planning.photos.folder import read_photos
+from planning.photos.folder import is_other_picture, read_photos
 from planning.photos.places import Locality, PhotoHeights
+from planning.photos.record import PhotoMetadata
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.colmap.folder import Frame, read_frame, read_model
 from reconstruction.colmap.georeference import (
@@ -25,6 +25,7 @@ from reconstruction.colmap.georeference import (
     ADJUSTED_SIGMA_M,
     Similarity,
     georeference,
+    named_below,
     posed_photos,
 )
 from reconstruction.colmap.pycolmap_run import RefineParameters, load_colmap
@@ -39,7 +40,7 @@ from reconstruction.colmap.refined_folder import (
     read_refined,
     write_refined,
 )
-from reconstruction.photos.poses import PhotoSet, pose_photos
+from reconstruction.photos.poses import UNPOSED, PhotoSet, name_in, pose_photos, unposed_findings
 
 LENS_UNKNOWN = "lens-distortion-unknown"
 """Code of the finding that advises to refine cameras."""
@@ -152,10 +153,10 @@ def photos_with_poses(
     InputError, ReconstructionError
         As `choose_poses`, or photos cannot be used.
     """
-    read = read_photos(folder, monitor)
+    read = read_photos(folder, monitor, posed_elsewhere=colmap is not None)
     posed = pose_photos(read.photos, site, folder, heights=heights, posed_elsewhere=colmap is not None)
     better = choose_poses(posed, folder, colmap, refine, monitor)
-    findings = (*read.findings, *findings_that_hold(posed.findings, better), *better.findings)
+    findings = (*read.findings, *findings_that_hold(posed, better), *better.findings)
     return replace(better, findings=findings)
 
 
@@ -168,7 +169,8 @@ def choose_poses(
 ) -> ChosenPoses:
     """The photos' own poses, or better ones where they are asked for.
 
-    A COLMAP model is brought into the site's frame by the photos' own poses; photos that are not in it are left out.
+    A COLMAP model is brought into the site's frame by the photos' own poses; photos that are not in it are left out,
+    and photos that say nothing of themselves have its poses. Its cameras are scaled to photos that were reduced.
     Refined poses are judged photo by photo, and photos without a refined pose that is believed keep their own.
 
     Parameters
@@ -193,27 +195,72 @@ def choose_poses(
         kept = read_refined(colmap, posed.photos)
         if kept.photos_sha256 == fingerprint(posed.photos):
             return _judged(posed.photos, kept, colmap, was_kept=True)
-    model = read_model(colmap)
-    frame = read_frame(colmap)
+    model = named_below(read_model(colmap), folder)
+    return _fitted(_of_model(model, read_frame(colmap), posed, folder), posed.sizes_px)
+
+
+def _of_model(model: ColmapModel, frame: Frame | None, posed: PhotoSet, folder: Path) -> ChosenPoses:
+    """Poses of a model: as it has them where it is in the frame of the site, else laid into it."""
     if frame is not None:
-        return _in_frame(model, frame, folder, {photo.name: photo.taken_at for photo in posed.photos})
+        return _in_frame(model, frame, posed, folder)
     if not posed.photos:
         text = say(
             "the photos do not say where they were taken, so the COLMAP model counts as one in the frame of the site"
         )
-        found = _in_frame(model, USUAL_FRAME, folder, {})
+        found = _in_frame(model, USUAL_FRAME, posed, folder)
         return replace(found, findings=(Finding(Severity.NOTE, "model-as-it-is", text),))
     reference = georeference(model, posed.photos)
     times = {photo.name: photo.taken_at for photo in posed.photos}
     better = posed_photos(model, reference.enu_from_model, folder, times)
-    known = (photo for photo in better if photo.name in times)
+    known = (photo for photo in better if photo.name in times or _says_nothing(photo, posed))
     photos = tuple(replace(photo, pose=replace(photo.pose, covariance=reference.usual_covariance)) for photo in known)
     points = reference.enu_from_model(model.points.xyz) if len(model.points) else None
     return ChosenPoses(photos, reference.findings, points_enu_m=points)
 
 
-def _in_frame(model: ColmapModel, frame: Frame, folder: Path, times: dict[str, datetime | None]) -> ChosenPoses:
+def _says_nothing(photo: PosedPhoto, posed: PhotoSet) -> bool:
+    """Whether a model's photo is in the folder, but has no pose of its own."""
+    is_unposed = any(each.name == photo.name for each in posed.unposed)
+    return is_unposed or (is_other_picture(photo.path) and photo.path.is_file())
+
+
+def _fitted(chosen: ChosenPoses, sizes_px: Mapping[str, tuple[int, int]]) -> ChosenPoses:
+    """Poses of a model with its cameras scaled to photos that are smaller or larger than those it was made of."""
+    photos = tuple(_scaled(photo, sizes_px.get(photo.name)) for photo in chosen.photos)
+    n = sum(one is not other for one, other in zip(photos, chosen.photos, strict=True))
+    if not n:
+        return chosen
+    text = say(
+        "{} of {} photos have another size than in the COLMAP model, by one factor in width and height; its cameras "
+        "were scaled to them",
+        n,
+        len(photos),
+    )
+    note = Finding(Severity.NOTE, "cameras-scaled", text, "", float(n), None, "photos")
+    return replace(chosen, photos=photos, findings=(*chosen.findings, note))
+
+
+def _scaled(photo: PosedPhoto, size_px: tuple[int, int] | None) -> PosedPhoto:
+    lens = photo.intrinsics
+    if size_px is None or size_px == (lens.width_px, lens.height_px):
+        return photo
+    width_px, height_px = size_px
+    off_px = abs(height_px - lens.height_px * width_px / lens.width_px)
+    return replace(photo, intrinsics=lens.scaled(width_px, height_px)) if off_px <= 1.0 else photo
+
+
+def described(folder: Path, read: Sequence[PhotoMetadata], photos: Sequence[PosedPhoto]) -> dict[str, PhotoMetadata]:
+    """By name, what photos say of themselves; of those that say nothing, as large as their camera."""
+    said = {name_in(folder, photo): photo for photo in read}
+    others = (photo for photo in photos if photo.name not in said)
+    return said | {
+        photo.name: PhotoMetadata(photo.path, photo.intrinsics.width_px, photo.intrinsics.height_px) for photo in others
+    }
+
+
+def _in_frame(model: ColmapModel, frame: Frame, posed: PhotoSet, folder: Path) -> ChosenPoses:
     """Photos of a model that is in the frame of the site already, as far as their files are there."""
+    times = {photo.name: photo.taken_at for photo in posed.photos}
     covariance = np.diag([frame.position_sigma_m**2] * 3 + [math.radians(frame.angle_sigma_deg) ** 2] * 3)
     found = posed_photos(model, Similarity.identity(), folder, times)
     photos = tuple(
@@ -264,10 +311,19 @@ def refined_poses(
     return _judged(photos, read_refined(where, photos), where, was_kept=False)
 
 
-def findings_that_hold(findings: Sequence[Finding], better: ChosenPoses) -> tuple[Finding, ...]:
-    """Findings about the photos' own cameras that hold for these poses: refined lenses are known."""
+def findings_that_hold(posed: PhotoSet, better: ChosenPoses) -> tuple[Finding, ...]:
+    """Findings about the photos' own cameras that hold for these poses.
+
+    Refined lenses are known, and photos that a COLMAP model has a pose of do not lack one.
+    """
+    has_pose = {photo.name for photo in better.photos}
+    still = [photo for photo in posed.unposed if photo.name not in has_pose]
+    findings = posed.findings
+    if len(still) < len(posed.unposed):
+        others = (finding for finding in findings if finding.code != UNPOSED)
+        findings = (*others, *unposed_findings(still, len(posed.photos) + len(posed.unposed)))
     if better.refined is None or better.refined.n_refined < better.refined.n_photos:
-        return tuple(findings)
+        return findings
     return tuple(finding for finding in findings if finding.code != LENS_UNKNOWN)
 
 

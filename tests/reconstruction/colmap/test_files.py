@@ -23,6 +23,7 @@ from reconstruction.colmap.record import (
     quaternion_of,
     rotation_of,
 )
+from reconstruction.light.photo_set import read_photo_set
 
 HUGE = 2**60
 
@@ -222,6 +223,14 @@ def test_camera_models_that_are_not_understood_are_named(tmp_path, number):
 
 
 def test_folders_without_or_with_another_model_are_refused(tmp_path):
+    write_model(tmp_path / "project" / "sparse" / "0", model())
+    with pytest.raises(InputError, match=r"has one in .*project.sparse.0: name that"):
+        read_model(tmp_path / "project")
+    with pytest.raises(InputError, match=r"dataset\.json, but a COLMAP model in"):
+        read_photo_set(tmp_path / "project")
+    (tmp_path / "cameras.xml").write_text("<document/>")
+    with pytest.raises(InputError, match="Export Cameras as Colmap"):
+        read_model(tmp_path / "cameras.xml")
     with pytest.raises(InputError, match="found no folder"):
         read_model(tmp_path / "nothing")
     with pytest.raises(InputError, match="sparse/0"):

@@ -43,6 +43,7 @@ from reconstruction.dataset.prepare import (
 from reconstruction.dataset.refined_mesh import frame_width_m, grown_corners, refine_mesh
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.training.parameters import TrainRequest
+from tests.planning.photos.photo_writer import exif_part, segment
 from tests.reconstruction.dataset.test_panel_images import grid
 from tests.reconstruction.panels.rectify.scenes import looking_at, surface_mesh
 from tests.reconstruction.panels.rectify.test_surface import surface
@@ -221,6 +222,18 @@ def test_broken_photos_are_reported_and_left_out(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="none of the 3 photos"):
         prepare(photos, site_model(), tmp_path / "again", QUICK)
     assert not (tmp_path / "again").exists()
+
+
+@pytest.mark.parametrize("orientation", [3, 6, 8])
+def test_photos_marked_to_be_shown_turned_are_straightened_as_they_are_stored(tmp_path: Path, orientation: int) -> None:
+    photos = photos_in(tmp_path / "in", BENT, 1)
+    prepare(photos, site_model(), tmp_path / "plain", QUICK)
+    content, mark = photos[0].path.read_bytes(), exif_part(image={0x0112: orientation})
+    photos[0].path.write_bytes(content[:2] + segment(mark) + content[2:])
+    prepared = prepare(photos, site_model(), tmp_path / "marked", QUICK)
+    assert prepared.findings == ()
+    one, other = (cv2.imread(str(tmp_path / name / "images" / photos[0].name)) for name in ("plain", "marked"))
+    np.testing.assert_array_equal(one, other)
 
 
 @pytest.mark.slow

@@ -6,6 +6,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
@@ -26,10 +27,19 @@ from reconstruction.colmap.georeference import georeference, model_of
 from reconstruction.colmap.pycolmap_run import RefineParameters
 from reconstruction.colmap.refine import Refinement
 from reconstruction.colmap.refined_folder import write_refined
+from reconstruction.dataset.prepare import PrepareParameters, prepare
 from reconstruction.photos.poses import pose_photos
 from tests.planning.photos.photo_writer import plain_jpeg, save
 from tests.reconstruction.colmap.models import covariance, turned
 from tests.services.photo_cases import draft_of, site_model, true_photos, with_paths, write_photos
+
+
+def picture_of(photo, suffix):
+    """A file that says nothing of itself, as large as its camera."""
+    return cv2.imencode(suffix, np.full((photo.intrinsics.height_px, photo.intrinsics.width_px, 3), 90, np.uint8))[
+        1
+    ].tobytes()
+
 
 TURN_RAD = np.radians([0.0, 0.5, 0.0])
 GOOD = covariance(0.01, 0.05)
@@ -183,14 +193,88 @@ def test_photos_that_say_nothing_get_the_poses_of_a_model(flight, tmp_path):
         photo_intake(other, site_model(), colmap=tmp_path / "sparse")
 
 
+def test_photos_of_other_kinds_get_the_poses_of_a_model_and_need_one(flight, tmp_path):
+    _, posed = flight
+    pictures = tmp_path / "pictures"
+    for photo in posed.photos:
+        save(pictures / Path(photo.name).with_suffix(".png"), picture_of(photo, ".png"))
+    as_png = [replace(photo, name=str(Path(photo.name).with_suffix(".png"))) for photo in posed.photos]
+    write_model(tmp_path / "sparse", model_of(as_png))
+    intake = photo_intake(pictures, site_model(), colmap=tmp_path / "sparse")
+    assert [photo.name for photo in intake.photos] == sorted(photo.name for photo in as_png)
+    assert all(intake.usable)
+    with pytest.raises(InputError, match=r"3 of other kinds, the first .*\.png; save them as JPEG"):
+        photo_intake(pictures, site_model())
+
+
+def test_photos_that_lost_their_pose_have_that_of_the_model_that_others_lay_into_the_site(flight, tmp_path):
+    folder, posed = flight
+    mixed = tmp_path / "mixed"
+    for path in folder.iterdir():
+        save(mixed / path.name, path.read_bytes())
+    lost = [replace(posed.photos[0], name="edited.jpg"), replace(posed.photos[1], name="edited.png")]
+    for photo in lost:
+        save(mixed / photo.name, picture_of(photo, Path(photo.name).suffix))
+    model, site = model_of([*posed.photos, *lost]), site_model()
+    write_model(tmp_path / "sparse", model)
+    without = photo_intake(mixed, site)
+    assert "edited.jpg" not in {photo.name for photo in without.photos}
+    assert "photos-unposed" in {finding.code for finding in without.findings}
+    intake = photo_intake(mixed, site, colmap=tmp_path / "sparse")
+    assert {photo.name for photo in intake.photos} == {image.name for image in model.images.values()}
+    assert "photos-unposed" not in {finding.code for finding in intake.findings}
+
+
+def test_cameras_of_a_model_are_scaled_to_reduced_photos_but_not_to_cropped_ones(flight, tmp_path):
+    _, posed = flight
+    lens = posed.photos[0].intrinsics
+    half, crop = (lens.width_px // 2, lens.height_px // 2), (lens.width_px, lens.height_px - 40)
+    for photo, size in zip(posed.photos, (half, crop, (lens.width_px, lens.height_px)), strict=True):
+        save(tmp_path / "reduced" / photo.name, plain_jpeg(size))
+    write_model(tmp_path / "sparse", model_of(posed.photos))
+    unposed = pose_photos(
+        read_photos(tmp_path / "reduced").photos, site_model().site, tmp_path / "reduced", posed_elsewhere=True
+    )
+    found = choose_poses(unposed, tmp_path / "reduced", tmp_path / "sparse")
+    lenses = {photo.name: photo.intrinsics for photo in found.photos}
+    first, second, third = (lenses[photo.name] for photo in posed.photos)
+    assert first == lens.scaled(*half)
+    assert (second, third) == (lens, lens)
+    (note,) = (finding for finding in found.findings if finding.code == "cameras-scaled")
+    assert note.message.startswith("1 of 3 photos")
+
+
+def test_images_named_from_the_root_are_photos_below_the_folder_and_none_outside_is_touched(flight, tmp_path):
+    _, posed = flight
+    plain, sizes = tmp_path / "plain", {}
+    for photo in posed.photos:
+        path = save(plain / photo.name, picture_of(photo, ".jpg"))
+        sizes[path] = path.read_bytes()
+    nothing = replace(posed, photos=(), metadata=(), lenses=())
+    from_root = [replace(photo, name=str(plain / photo.name)) for photo in posed.photos]
+    bent = replace(posed.photos[0].intrinsics, distortion=(-0.05, 0.01, 0.0, 0.0, 0.0))
+    write_model(tmp_path / "sparse", model_of([replace(photo, intrinsics=bent) for photo in from_root]))
+    found = choose_poses(nothing, plain, tmp_path / "sparse")
+    assert [photo.name for photo in found.photos] == sorted(photo.name for photo in posed.photos)
+    prepare(found.photos, site_model(), tmp_path / "dataset", PrepareParameters(n_points=50, normal_step=8))
+    assert {path: path.read_bytes() for path in plain.rglob("*") if path.is_file()} == sizes
+    assert (tmp_path / "dataset" / "images" / posed.photos[0].name).is_file()
+    for number, name in enumerate(("../plain/a.jpg", str(tmp_path / "elsewhere" / "a.jpg"), "x/../../plain/a.jpg")):
+        sparse = tmp_path / f"sparse-{number}"
+        write_model(sparse, model_of([replace(posed.photos[0], name=name)]))
+        with pytest.raises(InputError, match="does not lie below the folder of photos"):
+            choose_poses(nothing, plain, sparse)
+
+
 def test_lenses_that_were_refined_are_no_longer_called_unknown(flight, tmp_path):
     folder, posed = flight
     said = (Finding(Severity.NOTE, LENS_UNKNOWN, "bent lines"), Finding(Severity.NOTE, "height-reference", "heights"))
-    assert findings_that_hold(said, choose_poses(posed, folder)) == said
+    posed = replace(posed, findings=said)
+    assert findings_that_hold(posed, choose_poses(posed, folder)) == said
     for left_out, left in ((0, said[1:]), (1, said)):
         where = tmp_path / f"kept-{left_out}"
         write_refined(where, refinement(posed.photos, left_out), posed.photos, RefineParameters())
-        assert findings_that_hold(said, choose_poses(posed, folder, refine=RefineRequest(where))) == left
+        assert findings_that_hold(posed, choose_poses(posed, folder, refine=RefineRequest(where))) == left
 
 
 @pytest.mark.slow
