@@ -43,8 +43,11 @@ _NUMBER = re.compile(r"[+-]?([0-9]+([.][0-9]*)?|[.][0-9]+)([eE][+-]?[0-9]{1,3})?
 
 YES, NO = "yes", "no"
 
-_PLAIN = frozenset({"date", "found_on", "repaired_on", "next_due", "key", "inspection", "status", "sha256", "currency"})
+_PLAIN = frozenset({"key", "inspection", "status", "sha256", "currency"})
 """Fields in which blanks at the ends mean nothing."""
+
+_DAY_FIRST = re.compile(r"([0-9]{1,2})\.([0-9]{1,2})\.([0-9]{4})")
+"""A date with points, which has the day first wherever it is written; with slashes it may be either."""
 
 
 def escaped_formula(text: str) -> str:
@@ -57,9 +60,17 @@ def unescaped_formula(text: str) -> str:
     return text[1:] if _GUARDED.match(text) else text
 
 
-def number_cell(value: float) -> str:
-    """The shortest text that reads back as the number; one below zero is no formula, spreadsheets read it."""
-    return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(value)
+def number_cell(value: float, comma: bool = False) -> str:
+    """The shortest text that reads back as the number; one below zero is no formula, spreadsheets read it.
+
+    Parameters
+    ----------
+    comma
+        The table is parted by semicolons, so that a comma is a decimal one: where spreadsheets want that, they take
+        "1.44" for a month.
+    """
+    text = str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(value)
+    return text.replace(".", ",") if comma else text
 
 
 def read_number(text: str, field: str, comma: bool) -> float:
@@ -131,7 +142,14 @@ def read_outline(text: str, field: str) -> tuple[tuple[float, float], ...]:
         raise InputError(say("expected places such as [[0.1, 0.2], ...], got '{}'", text[:40], place=field)) from error
 
 
+def read_date(text: str) -> str:
+    """Date of a cell as ISO 8601 writes it, also where it stands as 31.03.2026; other texts as they are."""
+    found = _DAY_FIRST.fullmatch(text.strip())
+    return f"{found[3]}-{found[2]:0>2}-{found[1]:0>2}" if found else text.strip()
+
+
 _READERS: dict[str, Callable[[str, str, bool], Any]] = {
+    **dict.fromkeys(("date", "found_on", "repaired_on", "next_due"), lambda text, _field, _comma: read_date(text)),
     "severity": read_whole,
     "u": read_number,
     "v": read_number,
@@ -155,7 +173,7 @@ def read_field(field: str, text: str, comma: bool = False) -> Any:
 
 
 def read_value(type_name: AttributeType, text: str, field: str, comma: bool = False) -> Value:
-    """Value of an attribute of a type; texts and dates as they are.
+    """Value of an attribute of a type; texts as they are.
 
     Raises
     ------
@@ -164,6 +182,8 @@ def read_value(type_name: AttributeType, text: str, field: str, comma: bool = Fa
     """
     if type_name == "number":
         return read_number(text, field, comma)
+    if type_name == "date":
+        return read_date(text)
     return read_truth(text, field) if type_name == "yes/no" else text
 
 
@@ -189,7 +209,7 @@ def write_tables(book: RecordBook, folder: Path, semicolon: bool = False) -> tup
     Parameters
     ----------
     semicolon
-        Part cells by semicolons, as spreadsheets want them where numbers have a decimal comma.
+        Part cells by semicolons, and write decimal commas, as spreadsheets want both where numbers have them.
 
     Raises
     ------
@@ -198,7 +218,7 @@ def write_tables(book: RecordBook, folder: Path, semicolon: bool = False) -> tup
     """
     with book.database.snapshot():
         names = {row.global_id: row for row in book.objects(with_absent=True)}
-        tables = [(kind, _table(book, kind, names)) for kind in KINDS]
+        tables = [(kind, _table(book, kind, names, semicolon)) for kind in KINDS]
     make_folder(folder)
     delimiter = ";" if semicolon else ","
     files = {folder / table_name(kind): _bytes(head, lines, delimiter) for kind, (head, lines) in tables}
@@ -245,23 +265,27 @@ def _bytes(head: Iterable[str], lines: Iterable[Iterable[str]], delimiter: str) 
     return text.getvalue().encode("utf-8-sig")
 
 
-def _table(book: RecordBook, kind: Kind, names: Mapping[str, ObjectRow]) -> tuple[list[str], list[list[str]]]:
+def _table(
+    book: RecordBook, kind: Kind, names: Mapping[str, ObjectRow], comma: bool
+) -> tuple[list[str], list[list[str]]]:
     entries = book.entries(kind.record)
     if kind.record is Attribute:
-        return _wide(entries, names)
+        return _wide(entries, names, comma)
     columns = [field.name for field in fields(kind.record) if field.name != "global_id"]
     lines = [
         [
             entry.global_id,
             escaped_formula(names[entry.global_id].name),
-            *(_cell(getattr(entry, column)) for column in columns),
+            *(_cell(getattr(entry, column), comma) for column in columns),
         ]
         for entry in entries
     ]
     return [*OBJECT, *columns], lines
 
 
-def _wide(entries: Iterable[Attribute], names: Mapping[str, ObjectRow]) -> tuple[list[str], list[list[str]]]:
+def _wide(
+    entries: Iterable[Attribute], names: Mapping[str, ObjectRow], comma: bool
+) -> tuple[list[str], list[list[str]]]:
     """A line for each object that is in the model or has attributes, a column for each attribute."""
     standard: list[Column] = [(name, kind, unit) for name, (kind, unit) in STANDARD.items()]
     free: set[Column] = set()
@@ -269,23 +293,23 @@ def _wide(entries: Iterable[Attribute], names: Mapping[str, ObjectRow]) -> tuple
     for entry in entries:
         column = (entry.name, entry.type, entry.unit)
         free.add(column)
-        values.setdefault(entry.global_id, {})[column] = _cell(entry.value)
+        values.setdefault(entry.global_id, {})[column] = _cell(entry.value, comma)
     columns = [*standard, *sorted(free - set(standard))]
     lines = []
     for global_id, row in names.items():
         found = values.get(global_id, {})
-        sizes = [_cell(row.width_m), _cell(row.height_m)]
+        sizes = [_cell(row.width_m, comma), _cell(row.height_m, comma)]
         lines.append([global_id, escaped_formula(row.name), *sizes, *(found.get(column, "") for column in columns)])
     return [*OBJECT, *(f"{name} [m]" for name in COMPUTED), *map(column_head, columns)], lines
 
 
-def _cell(value: Any) -> str:
+def _cell(value: Any, comma: bool) -> str:
     if value is None:
         return ""
     if isinstance(value, bool):
         return YES if value else NO
     if isinstance(value, (int, float)):
-        return number_cell(value)
+        return number_cell(value, comma)
     if isinstance(value, tuple):
         return json.dumps(value) if value else ""
     return escaped_formula(str(value))

@@ -81,7 +81,7 @@ def test_tables_are_not_written_into_a_folder_that_is_called_as_a_file_is(reflig
         (("set", "A-0003", "maker=a", "maker=b"), "'maker' is given twice"),
         (("set", "A-0003", "thickness=a"), "thickness: expected a number"),
         (("add", "A-0003", "crack", "a=b"), "'crack': expected one of"),
-        (("add", "A-0003", "inspection", "date=1.1.2026"), "date: expected a date such as"),
+        (("add", "A-0003", "inspection", "date=1/2/2026"), "date: expected a date such as"),
         (("remove", "defect", "x"), "no defect with the key"),
         (("remove", "crack", "x"), "'crack': expected one of"),
         (("import", "missing.csv"), "expected a name of"),

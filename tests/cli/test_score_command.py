@@ -103,3 +103,12 @@ def test_tradeoff_writes_a_row_a_setting_and_a_picture(reflight, tmp_path):
 
 def test_sets_offered_are_the_sets_there_are():
     assert set(SETS) == set(SET_NAMES)
+
+
+def test_a_folder_called_model_is_a_models_folder_unless_two_names_follow(reflight, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for line in ("model photos", "model photos --views all", "model --lpips heads.pth photos", "model model photos"):
+        refused = reflight("score", *line.split())
+        assert refused.status == 1
+        assert "model: holds no finished model" in refused.error
+    assert "other: holds no finished model" in reflight("score", "model", "other", "photos").error

@@ -103,7 +103,12 @@ def _add_files(actions: Any) -> None:
     give.add_argument("-o", "--out", type=Path, required=True, metavar="PATH", help="folder, or a name ending in .ifc")
     give.add_argument("--into", type=Path, metavar="IFC", help="IFC file that a copy of gets the records")
     give.add_argument("--site", type=Path, metavar="SITE", help="site file whose building goes into a new IFC file")
-    give.add_argument("--semicolon", action="store_true", help="part the cells of tables by semicolons")
+    give.add_argument(
+    help_on_semicolons = "tables with semicolons and decimal commas, as spreadsheets of many languages want them"
+    give.add_argument("--semicolon", action="store_true", help=help_on_semicolons)
+        action="store_true",
+        help="tables with semicolons and decimal commas, for spreadsheets in languages that have these",
+    )
 
 
 def run_make(options: argparse.Namespace) -> int:
@@ -125,6 +130,10 @@ def run_make(options: argparse.Namespace) -> int:
     )
     print_next("records", options.folder, "list")
     return 0
+
+
+LAYERS = {"scene": say("building"), "component": say("facade"), "element": say("panel")}
+"""Objects of the model in the words of those who look after the building."""
 
 
 def run_list(options: argparse.Namespace) -> int:
@@ -151,7 +160,7 @@ def run_list(options: argparse.Namespace) -> int:
         inspected, worst = line["last_inspection"], line["worst_open_defect"]
         seen = say("inspected {}", inspected) if inspected else say("never inspected")
         defect = say(", open: {} ({})", worst, line["severity"]) if line["severity"] else ""
-        show(glue(f"{line['name']:<12} {line['global_id']}  {line['layer']}, ", seen, defect))
+        show(glue(f"{line['name']:<12} {line['global_id']}  ", LAYERS[line["layer"]], ", ", seen, defect))
     show(counted(len(lines), "object"))
     return 0
 
@@ -168,7 +177,7 @@ def run_show(options: argparse.Namespace) -> int:
     for field, value in content.items():
         if isinstance(value, list):
             for entry in value:
-                shown = {k: v for k, v in entry.items() if k != "global_id" and v not in (None, "", [])}
+                shown = {k: v for k, v in entry.items() if k != "global_id" and v not in (None, "", [], ())}
                 print(f"{field}: " + ", ".join(f"{k} {' '.join(str(v).split())}" for k, v in shown.items()))
         elif value is not None and field != "corners_enu_m":
             print(f"{field}: {value}")

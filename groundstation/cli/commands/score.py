@@ -39,6 +39,11 @@ def _add_model_arguments(parser: Any) -> None:
     add = parser.add_argument
     add("model", type=Path, metavar="MODEL", help="folder of a model")
     add("dataset", type=Path, metavar="DATASET", help="folder of a data set of the same site")
+    _add_model_options(parser)
+
+
+def _add_model_options(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
     add("--views", choices=("held-out", "all"), default="held-out", help="default: those that were not learned from")
     add("--lpips", type=Path, action="append", default=[], metavar="WEIGHTS", help="file of weights; give it again")
     add("--fit-exposure", action="store_true", help="fit the exposure of each view to its photo before it is scored")
@@ -190,10 +195,23 @@ def _take_models(parser: argparse.ArgumentParser) -> None:
 
     def parsed(args: Sequence[str] | None = None, namespace: Any = None) -> Any:
         first = args[0] if args else "-"
-        is_kind = first in KINDS or first.startswith("-")
+        is_kind = first.startswith("-") or (first in KINDS and not _is_folder_called_model(args or ()))
         return parse(args if is_kind else ["model", *(args or ())], namespace)
 
     parser.parse_known_args = parsed  # type: ignore[method-assign,assignment]
+
+
+def _is_folder_called_model(args: Sequence[str]) -> bool:
+    """Whether `model` names the folder of a model, as after `train ... -o model`: one name follows it, not two."""
+    if args[0] != "model":
+        return False
+    counting = argparse.ArgumentParser(add_help=False, exit_on_error=False)
+    _add_model_options(counting)
+    counting.add_argument("names", nargs="*")
+    try:
+        return len(counting.parse_known_intermixed_args(args[1:])[0].names) == 1
+    except argparse.ArgumentError:
+        return False
 
 
 def run_segmentation(options: argparse.Namespace) -> int:

@@ -90,8 +90,8 @@ def test_guards_come_off_again_and_other_texts_keep_their_apostrophes(text):
 @given(numbers, st.booleans())
 def test_numbers_come_back_bit_by_bit(value, comma):
     assert read_number(number_cell(value), "x", comma) == value
-    if comma and "e" not in number_cell(value):
-        assert read_number(number_cell(value).replace(".", ","), "x", comma) == value
+    assert read_number(number_cell(value, comma), "x", comma) == value
+    assert not (comma and "." in number_cell(value, comma)), "1.44 is a month to spreadsheets with decimal commas"
 
 
 def test_tables_of_spreadsheets_with_semicolons_and_decimal_commas(book, tmp_path):
@@ -106,6 +106,25 @@ def test_tables_of_spreadsheets_with_semicolons_and_decimal_commas(book, tmp_pat
     assert "line 2, column 'thickness': expected a number with a point" in str(error)
     error = refusal(book, table(tmp_path, "attributes", "name;thickness\r\nA-0000;1.234,5\r\n"))
     assert "expected a number, got '1.234,5'" in str(error)
+
+
+def test_tables_for_decimal_commas_have_them_and_dates_that_spreadsheets_save_with_points_are_read(book, tmp_path):
+    book.put(Defect(PANES[0], "crack", 3, "2026-03-31", u=0.25, v=0.5))
+    book.put(Attribute(PANES[0], "thickness", 28.5, "number", "mm"))
+    attributes, _, defects, *_ = write_tables(book, tmp_path / "tables", semicolon=True)
+    assert ";28,5;" in attributes.read_text("utf-8-sig")
+    text = defects.read_text("utf-8-sig")
+    assert ";3;2026-03-31;0,25;0,5;" in text
+    defects.write_text(text.replace("2026-03-31", "1.4.2026"), "utf-8")
+    before = contents(book)
+    read_tables(book, [(defects, kind_of_table(defects))])
+    (found,) = book.entries(Defect)
+    assert (found.found_on, found.u) == ("2026-04-01", 0.25)
+    assert contents(book) != before
+    error = refusal(book, table(tmp_path, "defects", "name;kind;severity;found_on\r\nA-0000;crack;3;31.02.2026\r\n"))
+    assert "expected a date such as 2026-03-31, got '2026-02-31'" in str(error)
+    error = refusal(book, table(tmp_path, "defects", "name;kind;severity;found_on\r\nA-0000;crack;3;03/04/2026\r\n"))
+    assert "expected a date such as 2026-03-31" in str(error)
 
 
 def test_keys_replace_and_their_absence_adds(book, tmp_path):
