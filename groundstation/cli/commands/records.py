@@ -104,10 +104,9 @@ def _add_files(actions: Any) -> None:
     give.add_argument("--into", type=Path, metavar="IFC", help="IFC file that a copy of gets the records")
     give.add_argument("--site", type=Path, metavar="SITE", help="site file whose building goes into a new IFC file")
     give.add_argument(
-    help_on_semicolons = "tables with semicolons and decimal commas, as spreadsheets of many languages want them"
-    give.add_argument("--semicolon", action="store_true", help=help_on_semicolons)
+        "--semicolon",
         action="store_true",
-        help="tables with semicolons and decimal commas, for spreadsheets in languages that have these",
+        help="tables with semicolons and decimal commas, as spreadsheets of many languages want them",
     )
 
 
