@@ -22,11 +22,11 @@ from groundstation.services.map.shapes import round_length
 
 PAD_PX = 6.0
 
-TICKS_X_PX, TICKS_Y_PX = 60.0, 26.0
-"""Least distance of neighbouring ticks: their numbers must not touch."""
-
 WIDEST_NUMBER = "0.0005"
 """The left margin has room for it, so that what is drawn does not jump sideways while numbers grow."""
+
+APART_X_PX, APART_Y = 16.0, 1.6
+"""Between the numbers of neighbouring ticks, and of those above one another in lines: they must not touch."""
 
 GRID_ALPHA = 130
 
@@ -60,16 +60,17 @@ class Axes:
 
     def paint(self, painter: QPainter, look: Colours, title_x: str, title_y: str = "") -> None:
         """Grid, numbers, titles and the axes themselves, in the painter's font."""
-        box, line = self.box, QFontMetricsF(painter.font()).height()
+        metrics = QFontMetricsF(painter.font())
+        box, line, wide = self.box, metrics.height(), metrics.horizontalAdvance(WIDEST_NUMBER)
         grid = QColor(look.line)
         grid.setAlpha(GRID_ALPHA)
-        for x in ticks(0.0, self.end_x, TICKS_X_PX / box.width()):
+        for x in ticks(0.0, self.end_x, (wide + APART_X_PX) / box.width()):
             at = self.place(x, self.low)
             painter.setPen(grid)
             painter.drawLine(at, QPointF(at.x(), box.top()))
             painter.setPen(QColor(look.text))
-            painter.drawText(QRectF(at.x() - 40.0, box.bottom() + 2.0, 80.0, line), BELOW, f"{x:g}")
-        for y in ticks(self.low, self.high, TICKS_Y_PX / box.height()):
+            painter.drawText(QRectF(at.x() - wide, box.bottom() + 2.0, 2.0 * wide, line), BELOW, f"{x:g}")
+        for y in ticks(self.low, self.high, APART_Y * line / box.height()):
             at = self.place(0.0, y)
             painter.setPen(grid)
             painter.drawLine(at, QPointF(box.right(), at.y()))
@@ -262,7 +263,8 @@ class LinesPlot(Chart):
             painter.drawLine(QPointF(left, top + 0.5 * height), QPointF(left + 22.0, top + 0.5 * height))
             painter.setPen(QColor(look.text))
             place = QRectF(left + MARK_PX, top, width - MARK_PX - 2.0, height)
-            name = QFontMetricsF(self.font()).elidedText(line.name, Qt.TextElideMode.ElideRight, place.width())
+            font, name = fitted(self.font(), line.name, place.width())
+            painter.setFont(font)
             painter.drawText(place, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, name)
 
 

@@ -3,22 +3,124 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QEvent, QPointF, QSignalBlocker, Qt, Signal
-from PySide6.QtGui import QShowEvent
+from PySide6.QtCore import QEvent, QPointF, QRectF, QSignalBlocker, Qt, Signal
+from PySide6.QtGui import QFont, QFontMetricsF, QShowEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from groundstation.gui.map.map_paint import sortie_colour
 from groundstation.gui.widgets.inputs import ChoiceBox
-from groundstation.gui.widgets.theme import colours
+from groundstation.gui.widgets.scrolling import fitted
+from groundstation.gui.widgets.theme import Colours, colours
 from groundstation.services.mission.waypoints import GroundCurve, HeightLimits, ProfileCurves, nearest_photo
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.units import UnitSystem, length_unit, minutes_text, speed_unit
 from planning.checks.rules import MAX_ALTITUDE_M
 from planning.insight.clearance import RouteClearance
+
+# Letters of pyqtgraph's charts: as large as those of the window, and none over another.
+
+RESTYLED = (QEvent.Type.PaletteChange, QEvent.Type.FontChange)
+
+WIDEST_HEIGHT = "-1000"
+"""Room for heights of four figures, so that charts do not jump when the units change."""
+
+NAME_SHARES = tuple(0.05 * number for number in range(21))
+"""Places along a chart at which the name of a line is tried, as parts of its width."""
+
+
+def dress_axis(axis: pg.AxisItem, text: str, font: QFont, look: Colours) -> None:
+    """Write an axis in the window's font and colours; a title that is longer than its axis is written smaller.
+
+    One for which even small letters are too long is left out; what is shown stands beside the chart, too.
+    """
+    is_upright = axis.orientation == "left"
+    axis.setPen(look.line)
+    axis.setTextPen(look.text)
+    axis.setStyle(tickFont=font)
+    # Seconds and feet take no prefix such as "k".
+    axis.enableAutoSIPrefix(False)
+    if is_upright:
+        metrics = QFontMetricsF(font)
+        axis.setWidth(metrics.horizontalAdvance(WIDEST_HEIGHT) + metrics.height() + 8.0)
+    axis.setLabel(text, color=look.text)
+    fit_title(axis, font)
+
+
+def fit_title(axis: pg.AxisItem, font: QFont) -> None:
+    """Give the title of an axis the largest letters that it has room for."""
+    size = axis.size()
+    room_px = size.height() if axis.orientation == "left" else size.width()
+    fitting, shown = fitted(font, axis.labelText, room_px)
+    axis.label.setFont(fitting)
+    axis.showLabel(shown == axis.labelText)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LineName:
+    """The name of a line in a chart.
+
+    Parameters
+    ----------
+    height_at
+        Of the line, at a place along the chart, both in its own units; NaN where it is not.
+    share
+        Where along the chart the name stands best, 0 to 1.
+    """
+
+    item: pg.TextItem
+    height_at: Callable[[float], float]
+    share: float
+
+
+def place_names(plot: pg.PlotItem, names: Sequence[LineName], curve: tuple[np.ndarray, np.ndarray]) -> None:
+    """Put names below or above their lines, where none lies over another; one that has no such place is left out.
+
+    Parameters
+    ----------
+    curve
+        Along the chart and up, in its units, shapes (n,): where they can, names keep clear of it, and of other lines.
+    """
+    (left, right), (low, high) = plot.vb.viewRange()
+    room = plot.vb.rect()
+    x_px, y_px = room.width() * (curve[0] - left) / (right - left), room.height() * (high - curve[1]) / (high - low)
+
+    def n_hidden(box: QRectF) -> int:
+        """Lines that run through a box, the curve twice."""
+        on_curve = (x_px >= box.left()) & (x_px <= box.right()) & (y_px >= box.top()) & (y_px <= box.bottom())
+        at = left + (right - left) * box.center().x() / room.width()
+        heights = (room.height() * (high - each.height_at(at)) / (high - low) for each in names)
+        return 2 * bool(on_curve.any()) + sum(1 for each in heights if box.top() + 1.0 < each < box.bottom() - 1.0)
+
+    taken: list[QRectF] = []
+    for name in names:
+        places = _places(name, room, (left, right), (low, high))
+        free = (box for box in places if not any(map(box.intersects, taken)))
+        box = min(free, key=n_hidden, default=None)
+        name.item.setVisible(box is not None)
+        if box is not None:
+            taken.append(box)
+            across, down = box.left() / room.width(), box.top() / room.height()
+            name.item.setPos(left + (right - left) * across, high - (high - low) * down)
+
+
+def _places(name: LineName, room: QRectF, span: tuple[float, float], heights: tuple[float, float]) -> Iterator[QRectF]:
+    """Boxes for a name in a chart, px, the best one first."""
+    size = name.item.textItem.boundingRect().size()
+    for share in sorted(NAME_SHARES, key=lambda share: abs(share - name.share)):
+        left_px = share * (room.width() - size.width())
+        middle = (left_px + 0.5 * size.width()) / max(room.width(), 1.0)
+        height = name.height_at(span[0] + (span[1] - span[0]) * middle)
+        line_px = room.height() * (heights[1] - height) / (heights[1] - heights[0])
+        for top_px in (line_px, line_px - size.height()):
+            box = QRectF(QPointF(left_px, top_px), size)
+            if math.isfinite(top_px) and room.contains(box):
+                yield box
+
 
 # Clearance along one sortie: what is kept from building, obstacles and no-fly volumes, and what must be.
 
@@ -78,6 +180,7 @@ class ClearanceChart(QWidget):
         self._limit = pg.InfiniteLine(angle=0, movable=False)
         self._plot.addItem(self._limit, ignoreBounds=True)
         self._plot.scene().sigMouseClicked.connect(self._clicked)
+        self._plot.getPlotItem().vb.sigResized.connect(self._fit_titles)
         self._layout.addWidget(self._plot, 1)
 
     def set_sorties(self, n_sorties: int) -> None:
@@ -111,7 +214,7 @@ class ClearanceChart(QWidget):
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802
         """Follow the theme."""
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and getattr(self, "_is_made", False):
+        if event.type() in RESTYLED and getattr(self, "_is_made", False):
             self._dress()
 
     def _dress(self) -> None:
@@ -119,15 +222,15 @@ class ClearanceChart(QWidget):
         self._plot.setBackground(found.base)
         left, bottom = self.tr("in {0}"), self.tr("distance flown in {0}")
         for side, text in (("left", left), ("bottom", bottom)):
-            axis = self._plot.getAxis(side)
-            axis.setLabel(text.format(unit.symbol), color=found.text)
-            axis.setPen(found.line)
-            axis.setTextPen(found.text)
-            axis.enableAutoSIPrefix(False)
+            dress_axis(self._plot.getAxis(side), text.format(unit.symbol), self.font(), found)
         self._plot.showGrid(x=True, y=True, alpha=0.15)
         self._solids.setPen(pg.mkPen(found.accent, width=2))
         self._no_fly.setPen(pg.mkPen(found.warning, width=2, style=Qt.PenStyle.DotLine))
         self._limit.setPen(pg.mkPen(found.error, width=1.5, style=Qt.PenStyle.DashLine))
+
+    def _fit_titles(self) -> None:
+        for side in ("left", "bottom"):
+            fit_title(self._plot.getAxis(side), self.font())
 
     def _draw(self) -> None:
         self._words.setText(self._said())
@@ -179,9 +282,6 @@ class ClearanceChart(QWidget):
 
 TIME, DISTANCE = "time", "distance"
 
-AXIS_WIDTH_PX = 56
-"""Room for heights of three figures, so that charts do not jump when the units change."""
-
 
 class ProfileChart(QWidget):
     """Draws curves. `bar` chooses what is shown and says what is under the pointer; put it where there is room.
@@ -205,6 +305,7 @@ class ProfileChart(QWidget):
         self._over.addItem(self.tr("over distance"), DISTANCE)
         self._hover.setProperty("role", "muted")
         self._marks: list[pg.InfiniteLine] = []
+        self._names: list[LineName] = []
         self._is_made = False
         self.bar = QWidget(self)
         row = QHBoxLayout(self.bar)
@@ -240,7 +341,8 @@ class ProfileChart(QWidget):
             plot.setMenuEnabled(False)
             plot.hideButtons()
             plot.setMouseEnabled(x=True, y=False)
-            plot.getAxis("left").setWidth(AXIS_WIDTH_PX)
+            plot.vb.sigResized.connect(self._fit)
+        self._height.vb.sigRangeChanged.connect(self._place_names)
         self._layout.addWidget(self._charts, 1)
         self._charts.scene().sigMouseMoved.connect(self._pointed)
         self._charts.scene().sigMouseClicked.connect(lambda event: self._clicked(event.scenePos()))
@@ -283,7 +385,7 @@ class ProfileChart(QWidget):
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802
         """Draw in the colours of another theme."""
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange and hasattr(self, "_is_made"):
+        if event.type() in RESTYLED and hasattr(self, "_is_made"):
             self._draw()
 
     def _curve(self) -> ProfileCurves | None:
@@ -304,24 +406,21 @@ class ProfileChart(QWidget):
         found, curve = colours(), self._curve()
         length, speed = length_unit(self._units), speed_unit(self._units)
         self._charts.setBackground(found.base)
-        for plot in (self._height, self._speed):
-            plot.clear()
-            for side in ("left", "bottom"):
-                axis = plot.getAxis(side)
-                axis.setPen(found.line)
-                axis.setTextPen(found.text)
-                # Seconds and feet take no prefix such as "k".
-                axis.enableAutoSIPrefix(False)
-            plot.showGrid(x=True, y=True, alpha=0.25)
-        self._height.setLabel("left", self.tr("Height [{0}]").format(length.symbol))
-        self._speed.setLabel("left", self.tr("Speed [{0}]").format(speed.symbol))
-        over = self.tr("Time [min]") if self._is_over_time() else self.tr("Distance [{0}]").format(length.symbol)
-        for plot in (self._height, self._speed):
-            plot.setLabel("bottom", over)
+        self._names = []
+        over = below = (
+            self.tr("Time [min]") if self._is_over_time() else self.tr("Distance [{0}]").format(length.symbol)
+        )
         if curve is not None and self._is_over_time() and curve.takeoff_landing_s > 0.0:
             # Only under the wider chart is there room for it.
-            text = self.tr("Time [min]; take-off and landing add {0:.0f} s").format(curve.takeoff_landing_s)
-            self._height.setLabel("bottom", text)
+            below = self.tr("Time [min]; take-off and landing add {0:.0f} s").format(curve.takeoff_landing_s)
+        for plot, beside, under in (
+            (self._height, self.tr("Height [{0}]").format(length.symbol), below),
+            (self._speed, self.tr("Speed [{0}]").format(speed.symbol), over),
+        ):
+            plot.clear()
+            dress_axis(plot.getAxis("left"), beside, self.font(), found)
+            dress_axis(plot.getAxis("bottom"), under, self.font(), found)
+            plot.showGrid(x=True, y=True, alpha=0.25)
         self._marks = []
         if curve is not None:
             x, photo_x = self._x(curve), self._photo_x(curve)
@@ -348,6 +447,7 @@ class ProfileChart(QWidget):
             self._height.setYRange(*(height_m * length.factor for height_m in shown), padding=0.0)
             self._draw_limits(shown)
             self._height.setXRange(float(x[0]), float(x[-1]), padding=0.01)
+            self._place_names()
             self._add_marks()
         self._mark()
 
@@ -361,12 +461,7 @@ class ProfileChart(QWidget):
         ):
             pen = pg.mkPen(colour, width=1.5, style=style)
             self._height.plot(x, (ground.height_m + above_m) * factor, pen=pen, connect="finite")
-        known = np.flatnonzero(np.isfinite(ground.height_m))
-        if len(known):
-            name = pg.TextItem(self.tr("terrain"), color=found.muted, anchor=(0.5, 0.0))
-            at = known[len(known) // 8]
-            name.setPos(float(x[at]), float(ground.height_m[at]) * factor)
-            self._height.addItem(name, ignoreBounds=True)
+        self._name(self.tr("terrain"), found.muted, 0.1, lambda at: float(np.interp(at, x, ground.height_m * factor)))
 
     def _draw_limits(self, shown_m: tuple[float, float]) -> None:
         limits, found = self._limits, colours()
@@ -377,7 +472,6 @@ class ProfileChart(QWidget):
             (limits.ground_m, self.tr("ground"), found.muted, 0.15),
             (limits.legal_m, self.tr("legal ceiling"), found.error, 0.25),
         )
-        # Names stand below their lines: what is flown is above the floor.
         for height_m, name, colour, place in (
             *(level if limits.is_level else ()),
             (limits.floor_m, self.tr("airspace floor"), found.warning, 0.45),
@@ -385,15 +479,30 @@ class ProfileChart(QWidget):
         ):
             if not shown_m[0] <= height_m <= shown_m[1]:
                 continue
-            anchor = (0.5, 0.0)
-            line = pg.InfiniteLine(
-                height_m * length.factor,
-                angle=0,
-                pen=pg.mkPen(colour, width=1.5, style=Qt.PenStyle.DashLine),
-                label=self.tr("{0} {1}").format(name, length.text(height_m)),
-                labelOpts={"position": place, "color": colour, "anchors": [anchor, anchor]},
-            )
-            self._height.addItem(line, ignoreBounds=True)
+            height = height_m * length.factor
+            pen = pg.mkPen(colour, width=1.5, style=Qt.PenStyle.DashLine)
+            self._height.addItem(pg.InfiniteLine(height, angle=0, pen=pen), ignoreBounds=True)
+            text = self.tr("{0} {1}").format(name, length.text(height_m))
+            self._name(text, colour, place, lambda _at, height=height: height)  # type: ignore[misc]
+
+    def _name(self, text: str, colour: str, share: float, height_at: Callable[[float], float]) -> None:
+        item = pg.TextItem(text, color=colour)
+        item.setFont(self.font())
+        item.textItem.document().setDocumentMargin(0.0)
+        self._height.addItem(item, ignoreBounds=True)
+        self._names.append(LineName(item, height_at, share))
+
+    def _place_names(self) -> None:
+        curve = self._curve()
+        if curve is not None:
+            height = curve.height_m * length_unit(self._units).factor
+            place_names(self._height, self._names, (self._x(curve), height))
+
+    def _fit(self) -> None:
+        for plot in (self._height, self._speed):
+            for side in ("left", "bottom"):
+                fit_title(plot.getAxis(side), self.font())
+        self._place_names()
 
     def _add_marks(self) -> None:
         for plot in (self._height, self._speed):

@@ -14,13 +14,13 @@ from PySide6.QtWidgets import QWidget
 from groundstation.gui.widgets.theme import Colours, colours
 from groundstation.services.mission.sunlight import HEIGHTS, DayRow, Look
 
-PAD_PX, BAR_PX, GAP_PX = 6.0, 16.0, 4.0
+PAD_PX, GAP_PX = 6.0, 4.0
 
 NAMES_SHARE = 0.3
 """Of the width that names may take; longer ones lose their middle."""
 
-HOUR_PX = 46.0
-"""Least distance of neighbouring hours: their numbers must not touch."""
+HOURS_APART = 1.25
+"""Least distance of neighbouring hours in widths of their text."""
 
 
 class SunChart(QWidget):
@@ -72,15 +72,15 @@ class SunChart(QWidget):
     def _make_room(self) -> None:
         line = QFontMetricsF(self.font()).height()
         n = max(1, len(self._rows))
-        self.setMinimumHeight(round(n * (BAR_PX + GAP_PX) + line + 2.0 * PAD_PX))
+        self.setMinimumHeight(round(n * (line + GAP_PX) + line + 2.0 * PAD_PX))
 
     def _box(self, row: int) -> QRectF:
         metrics = QFontMetricsF(self.font())
         right = PAD_PX + 0.5 * metrics.horizontalAdvance("24:00")
         names = max((metrics.horizontalAdvance(each.name) for each in self._rows), default=0.0)
         left = max(right, 2.0 * PAD_PX + min(names, NAMES_SHARE * self.width()))
-        top = PAD_PX + row * (BAR_PX + GAP_PX)
-        return QRectF(left, top, max(1.0, self.width() - left - right), BAR_PX)
+        line = metrics.height()
+        return QRectF(left, PAD_PX + row * (line + GAP_PX), max(1.0, self.width() - left - right), line)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """Say which part of the day is meant."""
@@ -149,10 +149,11 @@ class SunChart(QWidget):
 
     def _paint_hours(self, painter: QPainter, last: QRectF, line: float, look: Colours) -> None:
         painter.setPen(QColor(look.text))
-        every = 1 + int(HOUR_PX * max(1, len(self._hours) - 1) / max(1.0, last.width()))
+        hour_px = HOURS_APART * QFontMetricsF(painter.font()).horizontalAdvance("24:00")
+        every = 1 + int(hour_px * max(1, len(self._hours) - 1) / max(1.0, last.width()))
         for number, (share, text) in enumerate(self._hours):
             x = last.left() + share * last.width()
             painter.drawLine(QPointF(x, last.bottom()), QPointF(x, last.bottom() + 4.0))
             if number % every == 0:
-                at = QRectF(x - HOUR_PX, last.bottom() + 4.0, 2.0 * HOUR_PX, line)
+                at = QRectF(x - hour_px, last.bottom() + 4.0, 2.0 * hour_px, line)
                 painter.drawText(at, int(Qt.AlignmentFlag.AlignHCenter), text)
