@@ -81,7 +81,8 @@ def compile_kernels() -> None:
     field.legs_keep(np.ones((1, 3)), np.ones((1, 3)), 1.0)
     field.heights_m(np.ones((1, 3)))
     field.spread_departures(np.ones((1, 3)), np.zeros((2, 2)), np.zeros((2, 2)), np.zeros((1, 1)))
-    for module in (at_once, boxes, lower_bound, orienteering, separation, sorties, speed_profile, tour):
+    # The last one says that all are there: see `groundstation.services.plan.planning.compile_once`.
+    for module in (at_once, boxes, lower_bound, orienteering, sorties, speed_profile, tour, separation):
         module.compile_kernels()
 
 

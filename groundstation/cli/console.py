@@ -16,6 +16,7 @@ from groundstation.services.messages import LANGUAGES, localized, translation
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding, Severity
 from planning.base.messages import Message, about, glue, say
+from planning.base.progress import hear_compiling
 
 if TYPE_CHECKING:
     from missions.flight.outcome import FlightReport
@@ -58,6 +59,13 @@ def tell(template: str, *values: object, place: object = "", file: TextIO | None
 def show(text: str, *, file: TextIO | None = None, end: str = "\n") -> None:
     """Print a message that is made already, in the language of the command line."""
     print(worded(text), file=file, end=end, flush=file is sys.stderr)
+
+
+def tell_compiling() -> Callable[[], None]:
+    """Say it, in a line of its own, when kernels are compiled; returns what ends that."""
+    # Threads of jobs do not know what this one speaks.
+    context, over_progress = copy_context(), "\r\033[K" if sys.stderr.isatty() else ""
+    return hear_compiling(lambda text: context.copy().run(show, glue(over_progress, text), file=sys.stderr))
 
 
 def program_name() -> str:

@@ -19,7 +19,7 @@ from typing import Any, NoReturn
 
 from groundstation import __version__
 from groundstation.cli import commands
-from groundstation.cli.console import program_name, show, speaking, tell, worded
+from groundstation.cli.console import program_name, show, speaking, tell, tell_compiling, worded
 from groundstation.cli.options import new_folder
 from groundstation.services.messages import LANGUAGES
 from planning.base.errors import GroundStationError, OperationCancelled, PluginError, shortened
@@ -190,6 +190,7 @@ def _outcome(arguments: Sequence[str], open_window: OpenWindow, stack: ExitStack
             return open_window(request)
         if request != WindowOptions():
             parser.error(say("--open and --screenshots are for the window, which opens without a command"))
+        stack.callback(tell_compiling())
         return int(options.run(options))
     except SystemExit as stop:
         return int(stop.code or 0)

@@ -10,12 +10,15 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
 from numba.core.types import Type
 from numba.core.types.misc import unliteral
+
+from planning.base.progress import COMPILING, COMPILING_LOG
 
 F = TypeVar("F", bound=Callable[..., Any])
 Result = TypeVar("Result")
@@ -48,11 +51,11 @@ def inline(function: F) -> F:
 
 
 def _kept_on_disk(compiled: Any) -> Any:
-    """Have compiled code on disk read where it can be, and compiled again where it cannot.
+    """Have compiled code on disk read where it can be, and compiled again where it cannot, which is told.
 
     It names the modules of its types: where one has moved since, Numba by itself raises an error.
     """
-    file = compiled._cache._cache_file
+    load_overload, file = compiled._cache.load_overload, compiled._cache._cache_file
     file._version += f"-{LAYOUT}"
     load_index = file._load_index
 
@@ -62,8 +65,20 @@ def _kept_on_disk(compiled: Any) -> Any:
         except (ImportError, AttributeError):
             return {}
 
-    file._load_index = load_what_can_be_read
+    def load_or_tell(*signature: Any) -> Any:
+        found = load_overload(*signature)
+        if found is None:
+            _tell_compiling()
+        return found
+
+    file._load_index, compiled._cache.load_overload = load_what_can_be_read, load_or_tell
     return compiled
+
+
+@cache
+def _tell_compiling() -> None:
+    """Once in a process."""
+    COMPILING_LOG.info(COMPILING)
 
 
 def is_compiled(compiled: Callable[..., Any]) -> bool:

@@ -9,11 +9,14 @@ Three small arguments, passed last, in this order where present:
 
 from __future__ import annotations
 
+import logging
 import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Protocol
+
+from planning.base.messages import say
 
 Clock = Callable[[], float]
 """Seconds from an arbitrary start, never going back. `time.perf_counter` outside tests."""
@@ -151,3 +154,24 @@ def slices(n_steps: int | None = None, *, first: int = 1, clock: Clock = time.pe
         yield size
         taken += size
         size = max(1, min(2 * size, int(size * SLICE_S / max(clock() - begin, 1e-6))))
+
+
+# Kernels are compiled where this computer has none yet, which takes up to a minute on whatever comes first.
+
+COMPILING = say("compiling for this computer, once")
+
+COMPILING_LOG = logging.getLogger("planning.base.jit")
+"""Named here, so that who listens need not import a compiler. Libraries hear nothing of it unless they ask."""
+
+
+def hear_compiling(tell: Callable[[str], None]) -> Callable[[], None]:
+    """Have `tell` called when this process compiles its first kernel, on that thread; returns what ends it."""
+
+    class _Tell(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            tell(record.msg)
+
+    handler = _Tell()
+    COMPILING_LOG.setLevel(logging.INFO)
+    COMPILING_LOG.addHandler(handler)
+    return lambda: COMPILING_LOG.removeHandler(handler)

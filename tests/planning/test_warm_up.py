@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from planning.base.progress import COMPILING
 from planning.site.bundled import write_scene
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -67,9 +68,11 @@ def test_the_first_plan_of_an_installation_compiles_before_its_time_budget_begin
         "--json",
     ]
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
-    codes = []
+    codes, told = [], []
     for _ in range(2):
         done = subprocess.run(command, cwd=REPOSITORY, env=environment, check=True, capture_output=True, text=True)
+        told.append(done.stderr.count(COMPILING))
         codes.append([finding["code"] for finding in json.loads(done.stdout)["findings"]])
     assert "compiled" in codes[0]
     assert "compiled" not in codes[1]
+    assert told == [1, 0], "off a terminal, too, it is said why nothing comes for a while"

@@ -486,7 +486,7 @@ class ReportView(QWidget):
             return UNKNOWN if value is None else length.text(value)
 
         def degrees(value: float | None) -> str:
-            return UNKNOWN if value is None else f"{value:+.1f}"
+            return UNKNOWN if value is None else f"{value:+z.1f}"
 
         reasons = self._reasons()
         return (

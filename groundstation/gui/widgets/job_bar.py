@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import (
     QHBoxLayout,
@@ -22,6 +24,9 @@ from groundstation.services.units import minutes_text
 SHOW_AFTER_MS = 150
 """Shorter jobs come and go without the bar flashing up."""
 
+CLOCK_MS = 1000
+"""Its time goes on by itself: a job that is silent for a minute has not stood still at its first second."""
+
 
 class JobBar(QWidget):
     """Progress of the running job; hidden while nothing runs."""
@@ -31,6 +36,7 @@ class JobBar(QWidget):
         self._context = context
         self._ongoing: Ongoing | None = None
         self._event: JobProgress | None = None
+        self._heard_s = 0.0
         self._label, self._bar, self._left = ShortText(), QProgressBar(), QLabel()
         self._queue = QToolButton()
         self._queue.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
@@ -49,6 +55,9 @@ class JobBar(QWidget):
         self._delay.setSingleShot(True)
         self._delay.setInterval(SHOW_AFTER_MS)
         self._delay.timeout.connect(self._show_now)
+        self._clock = QTimer(self)
+        self._clock.setInterval(CLOCK_MS)
+        self._clock.timeout.connect(self._show_time)
         context.jobsChanged.connect(self._update)
         context.bridge.progressed.connect(self._show_progress)
         context.ongoingChanged.connect(self._ongoing_changed)
@@ -65,6 +74,7 @@ class JobBar(QWidget):
         jobs = self._context.jobs()
         if not jobs:
             self._delay.stop()
+            self._clock.stop()
             self._show_contents(False)
             self._show_ongoing()
             return
@@ -127,6 +137,7 @@ class JobBar(QWidget):
         if self._context.jobs():
             self._show_job()
             self._show_contents(True)
+            self._clock.start()
 
     def _show_contents(self, visible: bool) -> None:
         if not visible:
@@ -140,7 +151,7 @@ class JobBar(QWidget):
         jobs = self._context.jobs()
         if not jobs or jobs[0].id != event.job_id or jobs[0].cancel_requested:
             return
-        self._event = event
+        self._event, self._heard_s = event, time.perf_counter()
         if self._shows_job:
             self._show_event(event)
 
@@ -149,8 +160,18 @@ class JobBar(QWidget):
         self._bar.setRange(0, 1000 if event.total > 0 else 0)
         if event.total > 0:
             self._bar.setValue(int(1000 * min(1.0, event.done / event.total)))
-        # How long the whole takes, nobody knows; of a step it can be estimated.
-        self._say_time(event.elapsed_s, event.remaining_s, self.tr("this step: {0} left"))
+        self._show_time()
+
+    def _show_time(self) -> None:
+        """How long the whole takes, nobody knows; of a step it can be estimated."""
+        event, jobs = self._event, self._context.jobs()
+        if event is None or not jobs or event.job_id != jobs[0].id:
+            return
+        since_s = time.perf_counter() - self._heard_s
+        # An estimate that has run out says nothing.
+        has_estimate = event.remaining_s is not None and event.remaining_s >= since_s
+        remaining_s = event.remaining_s - since_s if event.remaining_s is not None and has_estimate else None
+        self._say_time(event.elapsed_s + since_s, remaining_s, self.tr("this step: {0} left"))
 
     def _list_queue(self) -> None:
         menu = self._queue.menu()

@@ -43,6 +43,7 @@ from groundstation.services.settings import Settings, settings_at_start, setting
 from planning.aircraft.catalogue import profiles
 from planning.base.errors import GroundStationError, InputError
 from planning.base.findings import Severity
+from planning.base.progress import hear_compiling
 from planning.geo.enu import geodetic_from_enu
 from planning.geo.frames import Origin
 from planning.geo.geoid import undulation_m
@@ -80,6 +81,7 @@ class ProjectController(QObject):
         self.context = ApplicationContext(Session(_first_document(self._settings)), self._runner, self)
         self.context.set_units(self._settings.units)
         self.context.set_models_drawn_by(self._settings.models_drawn_by)
+        self._translations.use(self._settings.language)
         self._dress()
         self.window = self._make_window()
         self._timer = QTimer(self)
@@ -88,6 +90,7 @@ class ProjectController(QObject):
         self.context.documentChanged.connect(lambda *_: self._show_title())
         self.context.documentChanged.connect(self._site_came)
         self._start_timer()
+        self._hear_no_more = hear_compiling(self._say_compiling)
 
     # The window
 
@@ -181,7 +184,16 @@ class ProjectController(QObject):
     def _site_came(self, before: Document, after: Document) -> None:
         """On another thread: start the process that plans; a start page can do without it, and without its memory."""
         if before.site is None and after.site is not None:
-            threading.Thread(target=self._worker.start, name="start-worker", daemon=True).start()
+            threading.Thread(target=self._start_worker, name="start-worker", daemon=True).start()
+
+    def _say_compiling(self, text: str) -> None:
+        """On whatever thread: say why something takes long this once."""
+        self.context.say(Severity.NOTE, self.context.localized(text))
+
+    def _start_worker(self) -> None:
+        from groundstation.services.plan.planning import load_planning
+
+        self._worker.start(load_planning)
 
     def _after_first_paint(self) -> None:
         for problem in self._settings_problems:
@@ -280,7 +292,6 @@ class ProjectController(QObject):
         )
 
     def _dress(self) -> None:
-        self._translations.use(self._settings.language)
         apply_theme(self._application, self._settings.theme, self._settings.text_scale)
         tint_all(self._application)
 
@@ -535,6 +546,7 @@ class ProjectController(QObject):
         QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)
         self._translations.remove()
         self.project_session.close()
+        self._hear_no_more()
         if self._owns_worker:
             self._worker.close()
         self._runner.shutdown()

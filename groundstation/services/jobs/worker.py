@@ -19,7 +19,7 @@ from typing import Any, TypeVar
 from groundstation.services.jobs.channel import Process, ProcessEnded, Send, sendable
 from planning.base.errors import GroundStationError, OperationCancelled
 from planning.base.messages import say
-from planning.base.progress import QUIET, Monitor, Stop, Trace, never
+from planning.base.progress import QUIET, Monitor, Stop, Trace, hear_compiling, never
 
 Result = TypeVar("Result")
 
@@ -62,8 +62,12 @@ class _Ended:
     error: BaseException | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class _Load:
+    function: Callable[[], None]
+
+
 class _Order(Enum):
-    LOAD = auto()
     STOP = auto()
     CANCEL = auto()
 
@@ -104,11 +108,11 @@ class Worker:
         self._child: _Child | None = None
         self._is_closed = False
 
-    def start(self) -> None:
-        """Start the process and let it load what planning needs, so that the first plan need not wait for it."""
+    def start(self, load: Callable[[], None]) -> None:
+        """Start the process and let it load what calls will need, so that the first one need not wait for it."""
         with self._lock:
             if not self._is_closed and self._child is None:
-                self._running().process.send(_Order.LOAD)
+                self._running().process.send(_Load(load))
 
     def run(
         self,
@@ -216,9 +220,11 @@ class _Service:
 
     def __init__(self, send: Send) -> None:
         self._send = send
-        self._calls: queue.SimpleQueue[_Call | None] = queue.SimpleQueue()
+        self._calls: queue.SimpleQueue[_Call | _Load] = queue.SimpleQueue()
         self._stop, self._cancel = threading.Event(), threading.Event()
         self._stage, self._last_s = "", 0.0
+        # Whoever waits for the next call hears it, too.
+        hear_compiling(lambda text: self._send(_Report(text, 0, 0)))
 
     def take(self, message: Any) -> None:
         """Take a call or a request."""
@@ -227,8 +233,8 @@ class _Service:
                 self._stop.clear()
                 self._cancel.clear()
                 self._calls.put(call)
-            case _Order.LOAD:
-                self._calls.put(None)
+            case _Load() as load:
+                self._calls.put(load)
             case _Order.STOP:
                 self._stop.set()
             case _Order.CANCEL:
@@ -242,8 +248,8 @@ class _Service:
         """Do what is called, for ever."""
         while True:
             call = self._calls.get()
-            if call is None:
-                _load_planning()
+            if isinstance(call, _Load):
+                call.function()
                 continue
             try:
                 self._send(self._outcome(call))
@@ -273,14 +279,3 @@ class _Service:
 
 
 service = _Service
-
-
-def _load_planning() -> None:
-    """Load the modules and the compiled kernels that most plans need, by planning a very small one."""
-    from planning.parameters import GreedyParameters
-    from planning.planner import plan_flight
-    from planning.request import PlanRequest
-    from planning.site.bundled import SCENES
-
-    few = GreedyParameters(n_candidates=200)
-    plan_flight(SCENES["roof"](), PlanRequest(n_views=3, greedy=few, time_budget_s=2.0))

@@ -18,15 +18,18 @@ from planning.base.findings import Finding, Severity
 from planning.base.jit import is_compiled
 from planning.base.json_file import check_output, plain_values
 from planning.base.messages import glue, say
-from planning.base.progress import QUIET, Monitor, Stop, Trace, never
+from planning.base.progress import COMPILING, QUIET, Monitor, Stop, Trace, never
 from planning.checks.rules import low_flight_allowed, sharpness
 from planning.checks.zones import source_text
 from planning.insight.flight_profile import lowest_flight
+from planning.parameters import GreedyParameters
 from planning.plan import Plan, Viewpoint, write_plan
 from planning.planner import OpenReason, Planned, plan_flight
 from planning.proof.make import proof_path
+from planning.proof.separation import separate
 from planning.request import PlanRequest
 from planning.routing.tour import kick
+from planning.site.bundled import SCENES
 from planning.site.ground import ground_of
 from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M, SiteModel
 from planning.site.zones.keep_out import at_time, known_files, near_zones
@@ -97,7 +100,7 @@ def plan_document_site(
     """
     if prepared is not None and prepared.is_cut_short:
         prepared = None
-    compiled_s = _compile_once(monitor)
+    compiled_s = compile_once(monitor)
     if started_s is not None:
         started_s += compiled_s
     planned = plan_flight(
@@ -110,20 +113,27 @@ def plan_document_site(
     return replace(planned, findings=tuple(findings))
 
 
-def _compile_once(monitor: Monitor) -> float:
+def compile_once(monitor: Monitor) -> float:
     """Compile the kernels of planning where this computer has none yet; returns how long that took, s.
 
     `make setup` does it for who works on the sources. Who installs the program has it done with the first plan: it
     takes longer than many a time budget.
     """
-    if is_compiled(kick):
+    if is_compiled(kick) and is_compiled(separate):
         return 0.0
     from planning.warm_up import compile_kernels
 
-    monitor.report(say("compiling for this computer, once"), 0, 1)
+    monitor.report(COMPILING, 0, 1)
     started_s = time.perf_counter()
     compile_kernels()
     return time.perf_counter() - started_s
+
+
+def load_planning() -> None:
+    """Load the modules and the compiled kernels that most plans need, by planning a very small one."""
+    compile_once(QUIET)
+    few = GreedyParameters(n_candidates=200)
+    plan_flight(SCENES["roof"](), PlanRequest(n_views=3, greedy=few, time_budget_s=2.0))
 
 
 def with_local_site(planned: Planned, site_model: SiteModel, prepared: Prepared | None) -> Planned:

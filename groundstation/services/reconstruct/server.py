@@ -36,7 +36,7 @@ from groundstation.services.reconstruct.messages import (
 )
 from groundstation.services.reconstruct.render_queue import RenderQueue
 from planning.base.errors import GroundStationError, OperationCancelled
-from planning.base.progress import Trace
+from planning.base.progress import Trace, hear_compiling
 
 if TYPE_CHECKING:
     from reconstruction.training.callbacks import TrainingSnapshot
@@ -100,6 +100,7 @@ class _Server:
         self._render_queue = RenderQueue(self._tell)
         self._stage, self._reported_s, self._stepped_s = "", 0.0, 0.0
         self._is_joint, self._n_measured = False, 0
+        hear_compiling(lambda text: self._tell(Stage(text, 0, 0)))
 
     def gone(self) -> float:
         """Break a training off: it keeps its state."""

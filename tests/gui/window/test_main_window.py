@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+import threading
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -21,7 +22,16 @@ from groundstation.services.settings import Language, Theme
 from groundstation.services.units import UnitSystem
 from planning.parameters import GreedyParameters
 from planning.request import PlanRequest
-from tests.gui.driving import TurnGaps, clicked, close_controller, press_in, trigger, turn_until, turn_until_idle
+from tests.gui.driving import (
+    PATIENCE_S,
+    TurnGaps,
+    clicked,
+    close_controller,
+    press_in,
+    trigger,
+    turn_until,
+    turn_until_idle,
+)
 
 GUI = Path(menus.__file__).parents[1]
 
@@ -114,6 +124,30 @@ def test_cancel_throws_a_plan_away_and_enough_keeps_the_best_so_far(application,
     turn_until_idle(application, controller)
     assert time.perf_counter() - started < 20.0
     assert len(controller.context.document.current.plan.viewpoints) >= 1
+
+
+def test_the_time_of_a_job_goes_on_while_it_tells_nothing(application, controller):
+    go_on = threading.Event()
+
+    def work(context):
+        context.report("thinking", 1, 2)
+        go_on.wait(PATIENCE_S)
+
+    controller.context.start("Think", work)
+    bar = controller.window.job_bar
+    times = []
+
+    def look():
+        shown = bar._left.text() if bar.isVisible() else ""
+        if shown and shown not in times:
+            times.append(shown)
+        return len(times) >= 3
+
+    turn_until(application, look)
+    go_on.set()
+    turn_until_idle(application, controller)
+    assert all(text.endswith(" so far") for text in times), times
+    assert times == sorted(times)
 
 
 @pytest.mark.slow
@@ -359,6 +393,9 @@ def test_the_language_waits_while_something_runs(application, controller):
     controller.choose(language=Language.GERMAN)
     assert controller.window is window
     assert "started next" in controller.window.messages.texts()
+    controller.choose(theme=Theme.DARK)
+    assert TABS[1].shown_title() == "Site", "no text of the window is in another language than the rest"
+    controller.choose(theme=Theme.LIGHT)
     turn_until_idle(application, controller)
     assert len(controller.context.document.plans) == 1
     controller.choose(language=Language.ENGLISH)

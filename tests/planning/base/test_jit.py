@@ -13,7 +13,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from planning.base import jit
 from planning.base.jit import chunks, inline, is_compiled, kernel, n_threads, run_chunks, run_parallel
+from planning.base.progress import COMPILING, hear_compiling
 
 
 @given(n=st.integers(0, 200), size=st.integers(1, 50))
@@ -115,6 +117,28 @@ def test_it_is_known_which_kernels_are_kept_on_disk(tmp_path: Path, monkeypatch:
     assert doubled(4) == 8
     assert is_compiled(doubled)
     assert not is_compiled(tripled)
+
+
+def test_compiling_is_told_once_in_a_process_and_to_those_only_who_still_listen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "adding.py").write_text("".join(f"def add_{n}(x):\n    return x + {n}\n\n\n" for n in range(4)))
+    monkeypatch.syspath_prepend(tmp_path)
+    import adding  # type: ignore[import-not-found]
+
+    told: list[str] = []
+    end = hear_compiling(told.append)
+    jit._tell_compiling.cache_clear()
+    assert kernel(adding.add_1)(1) == 2
+    assert told == [COMPILING]
+    assert kernel(adding.add_2)(1) == 3
+    assert told == [COMPILING]
+    jit._tell_compiling.cache_clear()
+    assert kernel(adding.add_1)(1) == 2
+    assert told == [COMPILING], "it is kept on disk"
+    end()
+    assert kernel(adding.add_3)(1) == 4
+    assert told == [COMPILING]
 
 
 @pytest.mark.parametrize("moved", ["its module is gone", "its name is gone"])

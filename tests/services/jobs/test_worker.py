@@ -12,7 +12,7 @@ from groundstation.services.jobs.runner import JobProgress, JobRunner, JobState
 from groundstation.services.jobs.worker import Worker
 from groundstation.services.plan.planning import plan_document_site, with_local_site
 from planning.base.errors import GroundStationError, InfeasibleError, OperationCancelled
-from planning.base.progress import QUIET, StopRequest, Trace, never
+from planning.base.progress import COMPILING_LOG, QUIET, StopRequest, Trace, never
 from planning.parameters import GreedyParameters
 from planning.request import PlanRequest
 from planning.site.bundled import SCENES
@@ -51,6 +51,10 @@ def where(*, stop, trace, monitor):
 
 def fail(error, *, stop, trace, monitor):
     raise error
+
+
+def prepare():
+    COMPILING_LOG.info("preparing what is called")
 
 
 def die(*, stop, trace, monitor):
@@ -191,10 +195,17 @@ def test_a_lost_process_is_an_error_and_the_next_call_has_a_new_one(worker, end,
 
 @pytest.mark.slow
 def test_a_process_that_was_started_early_works_as_any_other():
-    early = Worker()
-    early.start()
-    early.start()
-    assert early.run(double, 5) == 10
+    early, stages = Worker(), []
+    early.start(prepare)
+    early.start(prepare)
+
+    class Heard:
+        def report(self, stage, done, total):
+            stages.append(stage)
+
+    assert early.run(double, 5, monitor=Heard()) == 10
+    heard = [stage for stage in dict.fromkeys(stages) if stage != "starting"]
+    assert heard == ["preparing what is called", "doubling"], "it is said what is waited for"
     early.close()
 
 
@@ -220,7 +231,7 @@ def test_closing_ends_work_at_once_as_if_it_were_cancelled():
     thread.join(120.0)
     assert not thread.is_alive(), "what hangs is not waited for"
     assert isinstance(ended[0], OperationCancelled)
-    worker.start()
+    worker.start(prepare)
     with pytest.raises(OperationCancelled):
         worker.run(double, 1)
 
