@@ -21,7 +21,7 @@ from planning.base.messages import say
 from planning.base.progress import QUIET, Clock, Monitor
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.light.config import ReflectionConfig
-from reconstruction.light.glass_rays import GlassRays
+from reconstruction.light.glass_rays import GlassRays, numbers_in
 from reconstruction.light.photo_set import PanelPlanes, PhotoSet
 from reconstruction.light.reflective_panels import ModelName
 from reconstruction.light.training import TrainedReflections, mean_square_error, train_reflections
@@ -40,6 +40,9 @@ TRIED_STEPS, TRIED_BATCH = 240, 1024
 
 MOST_RAYS = 1 << 17
 """Of all photos together: more than a trial looks at."""
+
+DRAWN = 4 * MOST_RAYS
+"""Rays of all photos that those are taken from, and those that are scored."""
 
 SCORED, UNSEEN = 8192, 0.2
 """Rays that a trial is scored on, and the share of the photos that these are of."""
@@ -328,16 +331,17 @@ def with_splats(scores_db: Mapping[ModelName, float], seconds: float) -> Decisio
 def _folds(rays: GlassRays, seed: int) -> list[tuple[GlassRays, list[GlassRays]]]:
     """An even share of the rays of most photos, and some of each other photo to be scored on; many times of few."""
     generator = torch.Generator().manual_seed(seed)
-    photos = torch.unique(rays.photos)
+    n = len(rays)
+    order = torch.randperm(n, generator=generator) if n <= DRAWN else torch.randint(n, (DRAWN,), generator=generator)
+    of_photo = rays.photos[order]
+    photos = numbers_in(of_photo)
     if len(photos) < 2:
         return []
     n_unseen = max(1, round(UNSEEN * len(photos)))
     n_folds = min(FOLDS, len(photos) // n_unseen) if len(photos) < FEW_PHOTOS else 1
     shuffled = photos[torch.randperm(len(photos), generator=generator)]
-    order = torch.randperm(len(rays), generator=generator)
-    of_photo = rays.photos[order]
     folds = []
-    for held in shuffled[: n_folds * n_unseen].split(n_unseen):
+    for held in torch.split(shuffled[: n_folds * n_unseen], n_unseen):
         unseen = [rays[order[of_photo == photo][: -(-SCORED // n_unseen)]] for photo in held]
         folds.append((rays[order[~torch.isin(of_photo, held)][:MOST_RAYS]], unseen))
     return folds

@@ -21,7 +21,7 @@ from planning.base.messages import say
 from reconstruction.light import ray_table as kernels
 from reconstruction.light.config import GlassLearned, ReflectionConfig
 from reconstruction.light.environment_map import EnvironmentMap
-from reconstruction.light.glass_rays import GlassRays
+from reconstruction.light.glass_rays import GlassRays, numbers_in
 from reconstruction.light.photo_set import PanelPlanes
 from reconstruction.light.radiance_grid import RadianceGrid
 from reconstruction.light.ray_table import PaneHits, RayTable
@@ -196,7 +196,7 @@ class GlassLight(nn.Module):
         wide seemed bowed by 0.5 px, in the median): so it is the mean of the panes that rays show, less its standard
         error.
         """
-        panes = torch.unique(rays.panels).long()
+        panes = numbers_in(rays.panels)
         if self.bows is None or len(panes) < 2:
             return 0.0
         # Mirrored rays turn by twice the normal's angle.

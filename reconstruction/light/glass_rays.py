@@ -3,6 +3,7 @@
 This is all a model of reflections learns from; no rasteriser has a part in it. What is kept of a pixel is which one it
 is; its rays, one or several through places all over it, are made when they are needed. A pixel counts as glass where
 all of its area lies on one panel: its middle ray and those through its four corners meet the panel inside its edges.
+Panels are convex: where the four corners of a square of pixels do, all pixels in it count.
 Pixels that a frame shares would teach the frame's colour as a reflection; who knows what the frame adds to them asks
 for `middle` pixels too.
 """
@@ -18,6 +19,7 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from planning.base.jit import chunks, n_threads, run_parallel
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.base.cameras import PosedPhoto
@@ -29,7 +31,13 @@ DEFAULT_BYTES = 1 << 30
 """Memory for rays."""
 
 AT_ONCE = 1 << 18
-"""Pixels whose corners are checked at a time: about 100 MB."""
+"""Pixels of a photo that are checked at a time."""
+
+MOST_READ_PX = 1 << 24
+"""Pixels of photos that are read at a time on several cores: some 500 MB."""
+
+SQUARE_PX = 8
+"""Side of squares of pixels that are checked at once: most of a pane that is some tens of pixels wide."""
 
 CORNERS = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
 
@@ -72,6 +80,12 @@ class GlassRays:
         numbers = torch.nonzero(rows).squeeze(1) if rows.dtype == torch.bool else rows
         return GlassRays(self.table, *(getattr(self, name).index_select(0, numbers) for name in COLUMNS))
 
+    def sample(self, number: int, generator: torch.Generator) -> GlassRays:
+        """So many, drawn with replacement; all where there are no more: of millions it takes no time to draw a few."""
+        if len(self) <= number:
+            return self
+        return self[torch.randint(len(self), (number,), generator=generator)]
+
     def repeated(self, times: int) -> GlassRays:
         """Each ray so many times in a row."""
         if times == 1:
@@ -109,6 +123,11 @@ class GlassRays:
         mirrored = reflected_directions(hits.directions, self.table.normals[self.panels])
         cosines = hits.cosines.abs().clamp(max=1.0)
         return MiddleRays(self.table.rescaled(hits.points_m).float(), mirrored.float(), cosines.float())
+
+
+def numbers_in(column: Tensor) -> Tensor:
+    """Numbers of photos or panels that a column of rays has, ascending, int64; quicker than sorting millions."""
+    return torch.nonzero(torch.bincount(column)).squeeze(1)
 
 
 COLUMNS = tuple(field.name for field in fields(GlassRays) if field.name != "table")
@@ -183,9 +202,11 @@ def glass_rays(
         share = min(1.0, memory_bytes / (BYTES_PER_RAY * max(n_pixels, 1)))
     table = RayTable.of(photos, source.panels, source.own_exposures)
     parts = [_no_rays(table)]
-    for done, photo in enumerate(photos):
-        monitor.report(say("reading rays"), done, len(photos))
-        parts.append(_rays(source, table, done, photo, share, seed + done, which))
+    most = max((photo.intrinsics.width_px * photo.intrinsics.height_px for photo in photos), default=1)
+    for first, last in chunks(len(photos), max(1, min(n_threads(), MOST_READ_PX // most))):
+        monitor.report(say("reading rays"), first, len(photos))
+        arguments = ((source, table, done, photos[done], share, seed + done, which) for done in range(first, last))
+        parts += run_parallel(_rays, arguments)
     return joined(parts)
 
 
@@ -203,12 +224,31 @@ def _rays(
     if share < 1.0:
         kept = np.random.default_rng(seed).random(len(rows)) < share
         rows, columns = rows[kept], columns[kept]
-    picture = source.picture(photo)
+    picture, is_whole = source.picture(photo), _in_squares(table, number, numbers)
     parts = [_no_rays(table)]
     for start in range(0, len(rows), AT_ONCE):
         row, column = rows[start : start + AT_ONCE], columns[start : start + AT_ONCE]
-        parts.append(_kept(table, number, row, column, numbers[row, column], picture[row, column], which))
+        panels, colours, whole = numbers[row, column], picture[row, column], is_whole[row, column]
+        parts.append(_kept(table, number, row, column, panels, colours, whole, which))
     return joined(parts)
+
+
+def _in_squares(table: RayTable, number: int, numbers: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Pixels in squares that lie whole on one panel, shape as `numbers`; those of other squares may, too.
+
+    Where a lens bends straight lines, sides of a square are off by some thousandths of a pixel.
+    """
+    n_rows, n_columns = (length // SQUARE_PX for length in numbers.shape)
+    squares = numbers[: n_rows * SQUARE_PX, : n_columns * SQUARE_PX].reshape(n_rows, SQUARE_PX, n_columns, SQUARE_PX)
+    first, last = squares.min(axis=(1, 3)), squares.max(axis=(1, 3))
+    rows, columns = np.nonzero((first == last) & (first >= 0))
+    middles_px = SQUARE_PX * (torch.from_numpy(np.column_stack([columns, rows])).double() + 0.5)
+    photos, panels = torch.full((len(rows),), number), torch.from_numpy(first[rows, columns])
+    is_whole = np.zeros((n_rows, n_columns), bool)
+    is_whole[rows, columns] = table.holds(photos, middles_px, panels, SQUARE_PX * np.array(CORNERS)).numpy()
+    found = np.zeros(numbers.shape, bool)
+    found[: n_rows * SQUARE_PX, : n_columns * SQUARE_PX] = is_whole.repeat(SQUARE_PX, 0).repeat(SQUARE_PX, 1)
+    return found
 
 
 def _kept(
@@ -218,8 +258,10 @@ def _kept(
     columns: NDArray[np.int64],
     panels: NDArray[np.int64],
     colours: NDArray[np.uint8],
+    is_whole: NDArray[np.bool_],
     which: Which,
 ) -> GlassRays:
+    """Rays of pixels of a photo that count; those that are known to be `is_whole` are not looked at."""
     rays = rays_of_pixels(
         table,
         number,
@@ -229,7 +271,10 @@ def _kept(
         torch.from_numpy(colours),
     )
     around = np.array(CORNERS if which == "whole" else ((0.0, 0.0),))
-    return rays[table.holds(rays.photos, rays.middles_px, rays.panels, around)]
+    kept = torch.from_numpy(is_whole)
+    others = rays[~kept]
+    kept[~kept] = table.holds(others.photos, others.middles_px, others.panels, around)
+    return rays[kept]
 
 
 def _no_rays(table: RayTable) -> GlassRays:

@@ -15,18 +15,17 @@ from pathlib import Path
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from torch import Tensor
 
 from planning.base.errors import InputError
 from planning.base.messages import say
-from planning.base.progress import QUIET, Monitor
+from planning.base.progress import QUIET, Clock, Monitor
 from planning.coverage.mirrored_rays import Surroundings
 from planning.coverage.sections import panel_frames
 from planning.revision.seen_bodies import MirroredPlaces
 from planning.site.records import SiteModel, panel_corners
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.light.config import GlassLearned, ReflectionConfig
-from reconstruction.light.glass_rays import GlassRays, glass_rays
+from reconstruction.light.glass_rays import glass_rays, numbers_in
 from reconstruction.light.photo_set import PanelPlanes, PhotoSet, rgb_picture
 from reconstruction.light.radiance_grid import RadianceGrid
 from reconstruction.light.training import mean_square_error, train_reflections
@@ -110,13 +109,19 @@ def _size(photo: PosedPhoto, scale: Scale) -> tuple[int, int]:
     return -(-photo.intrinsics.width_px // scale), -(-photo.intrinsics.height_px // scale)
 
 
-def quick_look(source: PhotoSet, seconds: float = 40.0, seed: int = 0, monitor: Monitor = QUIET) -> QuickLook:
+def quick_look(
+    source: PhotoSet,
+    seconds: float = 40.0,
+    seed: int = 0,
+    monitor: Monitor = QUIET,
+    clock: Clock = time.perf_counter,
+) -> QuickLook:
     """Learn from each half of the photos, and look along the rays of the other.
 
     Parameters
     ----------
     seconds
-        Of wall time for both trainings together; reading photos comes on top.
+        By `clock`, for both trainings together; reading photos comes on top.
 
     Raises
     ------
@@ -127,9 +132,9 @@ def quick_look(source: PhotoSet, seconds: float = 40.0, seed: int = 0, monitor: 
     OperationCancelled
         From `monitor`.
     """
-    begun_s = time.perf_counter()
+    begun_s = clock()
     rays = glass_rays(source, source.photos, seed=seed, monitor=monitor)
-    with_glass = torch.unique(rays.photos)
+    with_glass = numbers_in(rays.photos)
     if len(with_glass) < LEAST_PHOTOS:
         raise InputError(
             say(
@@ -142,7 +147,7 @@ def quick_look(source: PhotoSet, seconds: float = 40.0, seed: int = 0, monitor: 
         )
     # Neighbours in time stand close together: halves of every other photo see much the same.
     rank = torch.zeros(len(source.photos), dtype=torch.long)
-    rank[with_glass.long()] = torch.arange(len(with_glass))
+    rank[with_glass] = torch.arange(len(with_glass))
     halves = rank[rays.photos.long()] % 2
     config = ReflectionConfig(
         seed=seed, time_limit_s=0.5 * seconds, learned=GlassLearned(tilts=True, poses=True), transients="off"
@@ -150,9 +155,15 @@ def quick_look(source: PhotoSet, seconds: float = 40.0, seed: int = 0, monitor: 
     parts, errors = [], []
     for half in (0, 1):
         trained = train_reflections(
-            rays[halves == 1 - half], source.panels, "radiance-grid", config, source.exposure, monitor=monitor
+            rays[halves == 1 - half],
+            source.panels,
+            "radiance-grid",
+            config,
+            source.exposure,
+            monitor=monitor,
+            clock=clock,
         )
-        looked_at = _some(rays[halves == half], seed)
+        looked_at = rays[halves == half].sample(LOOKED_AT, torch.Generator().manual_seed(seed))
         light = trained.panels.light
         assert light is not None
         assert isinstance(light.light, RadianceGrid)
@@ -168,12 +179,5 @@ def quick_look(source: PhotoSet, seconds: float = 40.0, seed: int = 0, monitor: 
         MirroredPlaces(*columns),
         len(with_glass),
         psnr_db(sum(errors) / 2.0),
-        time.perf_counter() - begun_s,
+        clock() - begun_s,
     )
-
-
-def _some(rays: GlassRays, seed: int) -> GlassRays:
-    if len(rays) <= LOOKED_AT:
-        return rays
-    chosen: Tensor = torch.randperm(len(rays), generator=torch.Generator().manual_seed(seed))[:LOOKED_AT]
-    return rays[chosen]

@@ -38,7 +38,7 @@ HISTORY_POINTS = 12
 CHECKED = 16384
 """Rays of those given that it is measured on."""
 
-N_MEAN_RAYS = 1 << 20
+N_MEAN_RAYS = 1 << 18
 """Rays that the mean colours to start from are taken of."""
 
 WORTH_IT = 1.3
@@ -243,9 +243,7 @@ def mean_square_error(panels: ReflectivePanels, rays: GlassRays, gain: float = 1
 
 
 def _sample(rays: GlassRays, n: int, seed: int) -> GlassRays:
-    if len(rays) <= n:
-        return rays
-    return rays[torch.randperm(len(rays), generator=torch.Generator().manual_seed(seed))[:n]]
+    return rays.sample(n, torch.Generator().manual_seed(seed))
 
 
 @contextmanager

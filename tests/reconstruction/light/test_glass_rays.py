@@ -8,6 +8,7 @@ import pytest
 import torch
 
 from planning.base.errors import OperationCancelled
+from reconstruction.light import glass_rays as rays_of_glass
 from reconstruction.light.glass_rays import (
     BYTES_PER_RAY,
     COLUMNS,
@@ -107,6 +108,23 @@ def test_a_small_memory_keeps_an_even_random_share(source):
     shares = torch.bincount(some.panels, minlength=6) / torch.bincount(everything.panels, minlength=6)
     assert (shares - shares.mean()).abs().max() < 0.6 * shares.mean()
     assert not torch.equal(some.rows, glass_rays(source, source.photos, BYTES_PER_RAY * 800, seed=1).rows)
+
+
+@pytest.mark.parametrize("side_px", [2, 3])
+@pytest.mark.parametrize("which", ["whole", "middle"])
+def test_squares_of_pixels_hold_the_rays_that_each_pixel_says(source, which, side_px, monkeypatch):
+    looked_at = []
+    monkeypatch.setattr(
+        RayTable, "holds", lambda *given, plain=RayTable.holds: looked_at.append(given) or plain(*given)
+    )
+    monkeypatch.setattr(rays_of_glass, "SQUARE_PX", side_px)
+    squares = glass_rays(source, source.photos, which=which)
+    n_looked_at = sum(len(photos) for _, photos, *_ in looked_at)
+    monkeypatch.setattr(rays_of_glass, "SQUARE_PX", 10_000)
+    looked_at.clear()
+    pixels = glass_rays(source, source.photos, which=which)
+    assert all(torch.equal(getattr(squares, name), getattr(pixels, name)) for name in COLUMNS)
+    assert n_looked_at < sum(len(photos) for _, photos, *_ in looked_at)
 
 
 def test_a_ray_takes_as_many_bytes_as_is_said(source):

@@ -1,5 +1,7 @@
 """A quick look at photos: how far away is what panes mirror, and photos from a card at a part of their size."""
 
+import time
+
 import cv2
 import numpy as np
 import pytest
@@ -26,7 +28,8 @@ from tests.reconstruction.light.synthetic_folder import (
 @pytest.mark.parametrize(("light", "is_near"), [(near, True), pytest.param(far, False, marks=pytest.mark.slow)])
 def test_what_is_mirrored_is_as_far_away_as_it_is(tmp_path, light, is_near):
     write_folder(tmp_path / "set", light, 24)
-    look = quick_look(read_photo_set(tmp_path / "set"), 3.0)
+    # Processor time: what else a busy machine does makes nothing less sharp.
+    look = quick_look(read_photo_set(tmp_path / "set"), 3.0, clock=time.process_time)
     distances = look.places.distances_m
     before_m = -look.places.places_enu_m[np.isfinite(distances), 1]
     assert set(look.places.halves.tolist()) == {0, 1}
