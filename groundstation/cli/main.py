@@ -117,7 +117,7 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--debug", action="store_true", help="show the traceback of an error")
     window = parser.add_argument_group("the window")
-    window.add_argument("--open", type=Path, metavar="PATH", help="project folder or site file to begin with")
+    window.add_argument("--open", type=Path, metavar="PATH", help="project, finished model or site to begin with")
     window.add_argument(
         "--screenshots", type=new_folder, metavar="DIR", help="save pictures of every tab and state, and end"
     )

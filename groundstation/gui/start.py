@@ -55,7 +55,7 @@ def run_window(path: Path | None = None) -> int:
     Parameters
     ----------
     path
-        Project folder or site file to begin with.
+        Folder of a project or a finished model, or site file to begin with.
 
     Raises
     ------

@@ -134,7 +134,7 @@ class StartPage(QObject):
             ),
             _Way(
                 self.tr("Open a project ..."),
-                self.tr("A folder that Reflight has saved"),
+                self.tr("A folder that Reflight has saved, or a finished model"),
                 "open",
                 self.projectRequested,
             ),

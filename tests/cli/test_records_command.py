@@ -99,6 +99,11 @@ def test_refusals_are_one_line_and_change_nothing(reflight, folder, arguments, w
 def test_without_records_the_way_to_some_is_told(reflight, tmp_path):
     assert "'records FOLDER make --objects SITE'" in reflight("records", tmp_path, "list").error
     assert reflight("records", tmp_path).status == 2
+    write_objects(synthetic_scene(), tmp_path / "a.gsscene")
+    assert reflight("records", tmp_path / "a.gsscene", "list").error.endswith("make them with 'records FOLDER make'")
+    (tmp_path / "a.model").mkdir()
+    (tmp_path / "a.model" / "model.json").write_text("{}")
+    assert "of which 'organise' makes a folder" in reflight("records", tmp_path / "a.model", "list").error
 
 
 LOOK = """

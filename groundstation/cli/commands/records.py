@@ -131,7 +131,7 @@ def run_make(options: argparse.Namespace) -> int:
     return 0
 
 
-LAYERS = {"scene": say("building"), "component": say("facade"), "element": say("panel")}
+LAYERS = {"scene": "building", "component": "facade", "element": "panel"}
 """Objects of the model in the words of those who look after the building."""
 
 

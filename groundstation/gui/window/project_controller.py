@@ -337,7 +337,15 @@ class ProjectController(QObject):
         self.open_folder(Path(folder))
 
     def open_folder(self, folder: Path) -> None:
-        """Open a project, after asking about what is not saved."""
+        """Open a project, after asking about what is not saved; a finished model on its tab, beside what is open."""
+        from groundstation.services.model.scene_card import is_model, is_scene
+
+        if not is_project(folder) and (is_scene(folder) or is_model(folder)):
+            from groundstation.gui.model.model_controller import ModelController
+
+            self.window.show_tab("model")
+            ModelController.of(self.context).open(folder)
+            return
 
         def open_it() -> None:
             take = self.project_session.opening_job(folder)
@@ -346,7 +354,7 @@ class ProjectController(QObject):
         self._leave(open_it)
 
     def open_path(self, path: Path) -> None:
-        """Open a project folder, its project.json, or a site file."""
+        """Open the folder of a project or a finished model, a project.json, or a site file."""
         if path.is_dir() or path.name == "project.json":
             self.open_folder(path)
             return

@@ -208,6 +208,19 @@ def open_records(folder: Path, writing: bool = False, who: str | None = None) ->
                 place=folder,
             )
         )
+    if not records_path(folder).exists():
+        from reconstruction.objects.store import DESCRIPTION
+        from reconstruction.training.parameters import MODEL
+
+        if (folder / DESCRIPTION).is_file():
+            raise InputError(say("there are no records yet; make them with 'records FOLDER make'", place=folder))
+        if (folder / MODEL).is_file():
+            raise InputError(
+                say(
+                    "is a trained model; records belong to its objects, of which 'organise' makes a folder",
+                    place=folder,
+                )
+            )
     return RecordBook(records_path(folder), writing, user_name() if who is None else who)
 
 

@@ -341,7 +341,8 @@ def _model(now: Milestones) -> Guidance:
         return Guidance(True, say("the model is open"), further, say("Export"), Act.EXPORT_MODEL)
     if now.model is not None:
         return Guidance(False, say("a model is trained"), say("open it"), say("Open the model"), Act.OPEN_MODEL)
-    return Guidance(False, "", say("train a model first"), say("To Reconstruct"), Act.TO_RECONSTRUCT)
+    further = say("open a finished model, or train one first")
+    return Guidance(False, "", further, say("To Reconstruct"), Act.TO_RECONSTRUCT)
 
 
 def _begin() -> Guidance:

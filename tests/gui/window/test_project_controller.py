@@ -17,6 +17,7 @@ from planning.base.errors import InputError
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.site.bundled import roof
+from reconstruction.objects.store import write_scene
 from tests.gui.driving import (
     accept_button,
     choose,
@@ -32,6 +33,7 @@ from tests.gui.driving import (
     type_into,
 )
 from tests.planning.revision.cases import QUICK
+from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 from tests.services.project_cases import small_disk
 
 
@@ -110,6 +112,21 @@ def test_leaving_unsaved_work_asks_first(application, make_controller, tmp_path)
     turn_until_idle(application, controller)
     assert controller.context.document.site is None
     assert open_project(tmp_path / "kept").document.site.site.name == "roof"
+
+
+def test_the_folder_of_a_model_opens_on_its_tab_and_the_project_stays(application, make_controller, tmp_path):
+    from groundstation.gui.model.model_controller import ModelController
+
+    folder = tmp_path / "Gebäude Süd.gsscene"
+    write_scene(synthetic_scene(((3, 2), (2, 1))), folder)
+    controller = make_controller()
+    with_site(application, controller)
+    controller.open_path(folder)
+    turn_until(application, lambda: ModelController.of(controller.context).card is not None)
+    assert controller.window.shown_tab() == "model"
+    assert ModelController.of(controller.context).card.folder.name == folder.name
+    assert controller.context.document.site.site.name == "roof"
+    assert "Error" not in controller.window.messages.texts()
 
 
 def test_a_damaged_project_is_refused_and_what_is_open_stays(application, make_controller, tmp_path):
