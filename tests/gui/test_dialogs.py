@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 import trimesh
-from PySide6.QtWidgets import QLineEdit, QPushButton
+from PySide6.QtWidgets import QAbstractSpinBox, QLineEdit, QPushButton
 
 from groundstation.services.project.document import Document, PlanEntry
 from missions.formats.registry import read_missions
@@ -315,3 +315,34 @@ def test_a_file_that_is_not_there_is_told_and_another_can_be_named(application, 
     with clicked(wrong_then_right, "OK") as asked:
         assert choose_file(controller.window, "Open", "All (*)") == tmp_path / "right.json"
     assert "wrong.json: there is nothing of that name." in asked[1]
+
+
+@pytest.mark.parametrize("name", ["sora", "terrain", "import"])
+def test_enter_in_a_field_presses_what_the_dialog_is_for_and_escape_leaves(
+    application, controller, planned, tmp_path, name
+):
+    """And not the first button that stands in it, which chooses a file."""
+    from groundstation.gui.mission.sora_dialog import SoraDialog
+    from groundstation.gui.site.site_opener import ImportDialog
+    from groundstation.gui.site.terrain_dialog import TerrainDialog
+
+    (model, plan), context, window = planned, controller.context, controller.window
+    if name == "sora":
+        dialog = SoraDialog(context, plan, model, "kiosk", parent=window)
+    elif name == "terrain":
+        dialog = TerrainDialog(context, window)
+    else:
+        path = tmp_path / "box.obj"
+        trimesh.creation.box((10.0, 10.0, 10.0)).export(path)
+        dialog = ImportDialog(context, path, window)
+    dialog.open()
+    turn_until_idle(application, controller)
+    field = next(
+        box for box in dialog.findChildren(QAbstractSpinBox) + dialog.findChildren(QLineEdit) if box.isVisible()
+    )
+    field.setFocus()
+    turn_until(application, field.hasFocus)
+    (usual,) = (button for button in dialog.findChildren(QPushButton) if button.isDefault())
+    assert usual.property("primary"), usual.text()
+    escape(dialog)
+    turn_until(application, lambda: not dialog.isVisible())

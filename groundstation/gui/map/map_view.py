@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QEvent, QMargins, QPoint, QPointF, QRect, QRectF, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPaintEvent, QPen, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QPushButton, QToolButton, QVBoxLayout, QWidget
 
 from groundstation.gui.application.translate import translated
@@ -214,6 +214,9 @@ EDGES = QMargins(56, 8, 8, 42)
 
 ONLINE_FOLDER = "map-tiles"
 """Where tiles of online maps are kept, in the folder for data."""
+
+FOCUS_PX = 2.0
+"""Of the line around a map that has the keyboard, as around a button."""
 
 REST_MS = 60
 """Without zooming for so long, the stretched picture is painted anew."""
@@ -473,6 +476,10 @@ class MapView(MapCanvas):
             paint_grid(painter, viewport, self._site.home, self._units, found.line)
         self._paint_layer(painter)
         self._paint_marks(painter)
+        if self.hasFocus():
+            painter.setPen(QPen(QColor(found.accent), FOCUS_PX))
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.drawRect(QRectF(self.rect()).adjusted(1.0, 1.0, -1.0, -1.0))
         painter.end()
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802

@@ -369,6 +369,7 @@ class BriefDialog(QDialog):
         self._paper.addItem(self.tr("US Letter"), True)
         self._paper.setCurrentIndex(int(is_letter_usual(context.units)))
         self._save = QPushButton(self.tr("Save as PDF ..."))
+        self._save.setDefault(True)
         self._save.setProperty("primary", True)
         self._print = QPushButton(self.tr("Print ..."))
         close = QPushButton(self.tr("Close"))

@@ -158,6 +158,7 @@ class AnsweringDialog(QDialog):
         self._findings.set_units(context.units)
         self._action = QPushButton(action)
         self._action.setProperty("primary", True)
+        self._action.setDefault(True)
         self._ask_soon = QTimer(self, interval=REST_MS, singleShot=True)
         self.finished.connect(self._let_go)
 
@@ -233,7 +234,6 @@ class ExportDialog(AnsweringDialog):
         self._plan, self._site_model, self._folder = plan, site_model, folder
         self._prepared: PreparedExport | None = None
         self._form = ExportForm(context.units)
-        self._action.setDefault(True)
         left = QWidget()
         left.setFixedWidth(FORM_WIDTH_PX)
         left_layout = QVBoxLayout(left)
@@ -395,8 +395,6 @@ class SendDialog(AnsweringDialog):
         self._folder = QPushButton(self.tr("Folder ..."))
         self._folder.setToolTip(self.tr("Send into a folder that you choose"))
         self._options = ExportForm(self._context.units, only=FileFormat.DJI_KMZ)
-        self._findings.set_placeholder(self.tr("No objections to these files."))
-        self._action.setDefault(True)
 
     def _lay_out(self) -> None:
         left = QWidget()
@@ -517,6 +515,7 @@ class SendDialog(AnsweringDialog):
         self._payload = None
         if self.storage() is None:
             self._findings.set_findings(())
+            self._findings.set_placeholder("")
             self._say(
                 "warning",
                 self.tr(
@@ -603,6 +602,7 @@ class SendDialog(AnsweringDialog):
             return
         n = len(prepared.targets)
         self._findings.set_findings(prepared.findings)
+        self._findings.set_placeholder(self.tr("No objections to these files."))
         self._action.setEnabled(True)
         if any(found.severity is Severity.WARNING for found in prepared.findings):
             self._say("warning", self.tr("Ready to be sent, files: {0}. Read the warnings.").format(n))

@@ -312,6 +312,7 @@ class ImportDialog(QDialog):
         self._notes.setFixedHeight(NOTES_HEIGHT_PX)
         self._again = QPushButton(self.tr("Preview again"))
         self._accept = QPushButton(self.tr("Import"))
+        self._accept.setDefault(True)
         self._accept.setProperty("primary", True)
         self._cancel = QPushButton(self.tr("Cancel"))
         self._lay_out()

@@ -185,6 +185,7 @@ class TerrainDialog(QDialog):
         self.notes.setVisible(False)
         self.attach, self.remove = QPushButton(self.tr("Attach terrain")), QPushButton(self.tr("Take terrain off"))
         self.attach.setProperty("primary", True)
+        self.attach.setDefault(True)
         self._close = QPushButton(self.tr("Close"))
         buttons = ButtonGrid()
         for button in (self.attach, self.remove, self._close):

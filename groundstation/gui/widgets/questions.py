@@ -13,7 +13,17 @@ from enum import Enum, auto
 from pathlib import Path
 
 from PySide6.QtCore import QCoreApplication, QObject
-from PySide6.QtWidgets import QDialog, QDialogButtonBox, QFileDialog, QInputDialog, QLineEdit, QMessageBox, QWidget
+from PySide6.QtWidgets import (
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QHeaderView,
+    QInputDialog,
+    QLineEdit,
+    QMessageBox,
+    QTreeView,
+    QWidget,
+)
 
 from planning.base.files import FILE_ENDING
 
@@ -217,6 +227,9 @@ class _PathDialog(QFileDialog):
             # It is asked here, for the name with its ending.
             self.setOption(QFileDialog.Option.DontConfirmOverwrite)
             self.selectFile(name)
+        table = self.findChild(QTreeView)
+        if table is not None:  # Qt's widths are those of small letters
+            table.header().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         line = self.findChild(QLineEdit, "fileNameEdit")
         if line is not None:
             line.textChanged.connect(self._may_be_taken)

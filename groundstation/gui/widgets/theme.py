@@ -190,6 +190,7 @@ def _style_sheet(found: Colours) -> str:
     QPushButton:checked:focus, QToolButton:checked:focus, QPushButton[primary="true"]:focus,
     QPushButton[flight="return"]:focus, QPushButton[flight="land"]:focus
         {{ border: 3px solid {found.text}; padding: 1px 6px; }}
+    QDialogButtonBox {{ dialogbuttonbox-buttons-have-icons: 0; }}
     QComboBox, QAbstractSpinBox, QLineEdit {{ min-height: {TOUCH_PX - 6}px; }}
     QComboBox QAbstractItemView::item, QMenu::item {{ min-height: {TOUCH_PX - 6}px; }}
     QMenu::item {{ padding: 2px 24px 2px 12px; }}
