@@ -225,9 +225,9 @@ function showWords() {
   showColours();
 }
 
-// How far what panes mirror can be trusted.
+// How far what panes mirror, where there are any, can be trusted.
 function showNote() {
-  const texts = model.n ? [say(state.note || (model.is_baked ? "baked" : "plain"))] : [];
+  const texts = model.n && model.panes.length ? [say(state.note || (model.is_baked ? "baked" : "plain"))] : [];
   if (parts?.isLost) texts.push(say("partsMissing", { folder: model.beside.folder }));
   if (picture !== null && picture.most < model.n) texts.push(say("partly", { n: picture.most, all: model.n }));
   byId("note").textContent = texts.join(" ");

@@ -398,3 +398,13 @@ def test_without_webgl_the_records_are_still_there(browser, tmp_path):
     browser.run("document.querySelectorAll('.row')[1].click()")
     assert "Riß am Rand" in browser.texts("#content")[0]
     browser.cdp("Page.removeScriptToEvaluateOnNewDocument", **added)
+
+
+def test_a_page_of_a_model_without_panes_says_nothing_of_reflections(any_browser, tmp_path):
+    opened(any_browser, tmp_path / "panes", synthetic_scene(sizes=((50,),)))
+    assert "Reflections" in any_browser.texts("#note")[0]
+    opened(any_browser, tmp_path / "none", synthetic_scene(sizes=(), n_background=200))
+    assert any_browser.texts("#note") == any_browser.texts("#trouble") == [""]
+    assert "0 panes" in any_browser.texts("#content")[0]
+    assert any_browser.pixels().std() > 1.0
+    assert any_browser.errors() == []
