@@ -15,8 +15,13 @@ from groundstation.services.jobs.worker import Worker
 from groundstation.services.model.export import ModelExport, WrittenModel, export_model_in_process
 from groundstation.services.model.facility_records import (
     Attachment,
+    Exported,
+    Imported,
     attachments_of,
     book_of_scene,
+    export_tables,
+    import_records,
+    open_records,
     user_name,
     with_file,
 )
@@ -90,6 +95,7 @@ class ModelController(QObject):
         self.colour_by = ""
         self.colouring: Colouring = NO_COLOURS
         self.is_reading = False
+        self.tables: Path | None = None
         self.sceneChanged.connect(lambda: context.note(is_model_open=self.card is not None))
 
     @classmethod
@@ -344,6 +350,48 @@ class ModelController(QObject):
     def undo(self) -> bool:
         """Take the last change of records back."""
         return self._write(lambda book: book.undo())
+
+    def write_tables(self, folder: Path, semicolon: bool) -> None:
+        """Write all records as tables into a folder; where there are none yet, with the panels to be filled in.
+
+        Parameters
+        ----------
+        semicolon
+            With semicolons and decimal commas.
+        """
+        card = self.card
+        if card is None:
+            return
+
+        def work(_context: JobContext) -> Exported:
+            with open_records(card.folder) if has_records else book_of_scene(card.folder, user_name()) as book:
+                return export_tables(book, folder, semicolon)
+
+        has_records, self.tables = self.has_records, folder
+        self._context.start(self.tr("Write the records as tables"), work, self._tables_written)
+
+    def _tables_written(self, done: Exported) -> None:
+        text = self.tr("{0} tables are written: {1}").format(len(done.files), done.files[0].parent)
+        self._context.say(Severity.NOTE, text)
+
+    def read_tables(self, folder: Path) -> None:
+        """Take over the records of all tables in a folder, in one step that is taken back as one."""
+        card = self.card
+        if card is None:
+            return
+
+        def work(context: JobContext) -> Imported:
+            with book_of_scene(card.folder, user_name()) as book:
+                return import_records(book, folder, monitor=context)
+
+        self.tables = folder
+        self._context.start(self.tr("Read tables of records"), work, self._tables_read)
+
+    def _tables_read(self, done: Imported) -> None:
+        text = self.tr("The tables are read: {0} records are new or other.").format(sum(done.n_changed.values()))
+        self._context.say(Severity.NOTE, text)
+        self._colour()
+        self.recordsChanged.emit()
 
     @property
     def _book_path(self) -> Path:

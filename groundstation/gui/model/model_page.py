@@ -8,6 +8,7 @@ from pathlib import Path
 
 from PySide6.QtCore import (
     QAbstractListModel,
+    QLocale,
     QModelIndex,
     QObject,
     QPersistentModelIndex,
@@ -368,6 +369,8 @@ class ModelPage(QObject):
         records.undoRequested.connect(controller.undo)
         records.levelChanged.connect(controller.look_at)
         records.reportRequested.connect(self._make_report)
+        records.tablesWanted.connect(self._write_tables)
+        records.tablesGiven.connect(self._read_tables)
         self.report.done.connect(self._report_done)
         self.report.failed.connect(self._report_failed)
         self.pane.saveRequested.connect(self._save_picture)
@@ -439,6 +442,25 @@ class ModelPage(QObject):
         if path is not None:
             self.make_report(path)
 
+    def _write_tables(self) -> None:
+        card, title = self.controller.card, self.tr("Write the records as tables")
+        if card is None:
+            return
+        proposed = Path.home() / file_name(self.tr("{0} records").format(card.name))
+        folder = self.questions.new_folder(self._shared_view.window(), title, proposed)
+        if folder is not None:
+            # As spreadsheets of this computer have it: they go by the system, not by the window's language.
+            self.controller.write_tables(folder, QLocale.system().decimalPoint() == ",")
+
+    def _read_tables(self) -> None:
+        card = self.controller.card
+        if card is None:
+            return
+        title = self.tr("Folder of tables")
+        folder = self.questions.folder(self._shared_view.window(), title, self.controller.tables, card.folder.parent)
+        if folder is not None:
+            self.controller.read_tables(folder)
+
     def _proposed(self, ending: str) -> Path:
         """A name for a file about the model that is open."""
         name = self.tr("model") if self.controller.card is None else self.controller.card.name
@@ -483,6 +505,7 @@ class ModelPage(QObject):
         card = self.controller.card
         self.side.open.setEnabled(not self.controller.is_reading)
         self.side.export.setEnabled(card is not None and not self.controller.is_reading)
+        self.records.tables.setEnabled(card is not None and not self.controller.is_reading)
         if self.controller.is_reading:
             self.side.title.setText(self.tr("The model is being opened ..."))
         elif card is None:

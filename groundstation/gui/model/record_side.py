@@ -307,6 +307,8 @@ class RecordSide(QWidget):
     -------
     changeRequested(Entry, Path or None), removeRequested(Entry)
     undoRequested(), reportRequested()
+    tablesWanted(), tablesGiven()
+        All records are to be written as tables; or read from tables.
     levelChanged(str)
         Records of a panel, a facade or the building are wanted.
     """
@@ -315,6 +317,8 @@ class RecordSide(QWidget):
     removeRequested = Signal(object)  # noqa: N815
     undoRequested = Signal()  # noqa: N815
     reportRequested = Signal()  # noqa: N815
+    tablesWanted = Signal()  # noqa: N815
+    tablesGiven = Signal()  # noqa: N815
     levelChanged = Signal(str)  # noqa: N815
 
     def __init__(self, words: Callable[[str], str], parent: QWidget | None = None) -> None:
@@ -327,7 +331,7 @@ class RecordSide(QWidget):
         self._groups: dict[type[Any], QTreeWidgetItem] = {}
         self.add, self.change = QPushButton(self.tr("Add ...")), QPushButton(self.tr("Change ..."))
         self.remove, self.undo = QPushButton(self.tr("Delete")), QPushButton(self.tr("Undo"))
-        self.report = QPushButton(self.tr("Report as PDF ..."))
+        self.report, self.tables = QPushButton(self.tr("Report as PDF ...")), QPushButton(self.tr("Tables"))
         self._make()
         self.show_subject("panel", None, UnitSystem.METRIC)
 
@@ -422,7 +426,13 @@ class RecordSide(QWidget):
         layout.addLayout(facts)
         layout.addWidget(self.tree, 1)
         layout.addLayout(buttons)
-        layout.addWidget(self.report)
+        buttons.addWidget(self.report, 2, 0)
+        buttons.addWidget(self.tables, 2, 1)
+        in_tables = QMenu(self)
+        in_tables.addAction(self.tr("Write tables for a spreadsheet ...")).triggered.connect(self._ask_for_tables)
+        in_tables.addAction(self.tr("Read tables ...")).triggered.connect(self._give_tables)
+        self.tables.setMenu(in_tables)
+        self.tables.setToolTip(self.tr("All records of the model as CSV tables, to be filled in and read again"))
         self.undo.setToolTip(self.tr("Take the last change of records back"))
         self.add.setMenu(self.kinds)
         self.kinds.triggered.connect(self._add)
@@ -438,6 +448,12 @@ class RecordSide(QWidget):
         for button, is_on in ((self.add, has_subject), (self.change, has_entry), (self.remove, has_entry)):
             button.setEnabled(is_on)
         self.report.setEnabled(has_subject)
+
+    def _ask_for_tables(self, _checked: bool = False) -> None:
+        self.tablesWanted.emit()
+
+    def _give_tables(self, _checked: bool = False) -> None:
+        self.tablesGiven.emit()
 
     def _level_chosen(self) -> None:
         self.levelChanged.emit(self.level.currentData())

@@ -291,6 +291,34 @@ def test_the_picture_is_saved_with_its_marks(opened, tmp_path):
     assert "cannot be written" in opened.messages[-1].text
 
 
+def test_records_go_into_tables_and_what_a_spreadsheet_filled_in_comes_back(application, opened, tmp_path):
+    write, read = opened.records.tables.menu().actions()
+    with clicked("Cancel"):
+        write.trigger()
+    with clicked(choose(tmp_path / "tables")):
+        write.trigger()
+    turn_until(application, lambda: not opened._context.jobs())
+    assert "5 tables are written" in opened.messages[-1].text
+    path = tmp_path / "tables" / "attributes.csv"
+    text = path.read_text("utf-8-sig")
+    assert "A-0000" in text, "panels that nothing is known of are there to be filled in"
+    parted = ";" if ";" in text else ","
+    path.write_text(f"name{parted}maker\r\nA-0000{parted}Glas Müller\r\nB-0001{parted}Weiß\r\n", "utf-8")
+    with clicked(choose(tmp_path / "tables")):
+        read.trigger()
+    turn_until(application, lambda: not opened._context.jobs())
+    assert "2 records are new or other" in opened.messages[-1].text
+    first = next(panel for panel in opened.controller.card.panels if panel.name == "A-0000")
+    opened.controller.select(first.global_id)
+    assert "maker: Glas Müller" in tree_texts(opened)
+    path.write_text(f"name{parted}maker\r\nZ-0000{parted}x\r\n", "utf-8")
+    opened.controller.read_tables(tmp_path / "tables")
+    turn_until(application, lambda: not opened._context.jobs())
+    assert "Z-0000" in opened.messages[-1].text
+    opened.records.undo.click()
+    assert "maker: Glas Müller" not in tree_texts(opened)
+
+
 def test_a_report_has_a_page_for_each_panel_and_no_markup_of_records(application, opened, tmp_path):
     panels = opened.controller.card.panels[:2]
     note = "<script>alert(1)</script>"
