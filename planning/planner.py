@@ -20,10 +20,10 @@ from planning.aircraft.catalogue import Profile, profile
 from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.findings import Finding
+from planning.base.jit import chunks
 from planning.base.progress import QUIET, Monitor, Stop, TimeLimit, Trace, any_of, never
-from planning.coverage.evaluate import DepthCount, coverage, depth
+from planning.coverage.evaluate import DepthCount, Sight, coverage_of_sights, depth, section_counts, sights
 from planning.coverage.image_error import ImageErrorModel
-from planning.coverage.model import exact_coverage
 from planning.coverage.positions import rounded
 from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
 from planning.geo.frames import wrap_heading_deg
@@ -132,6 +132,8 @@ class OpenReason(StrEnum):
     """Only places closer to other viewpoints than the aircraft accepts were found."""
     SEARCH = "search"
     """Nothing: more viewpoints, or a longer search, would cover it."""
+    LATE = "late"
+    """It was not found out, since the time was up."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,10 +145,18 @@ class OpenSection:
     why: OpenReason
 
 
+OPEN_PER_BLOCK = 2000
+"""Sections that are looked at between two looks at the clock; the first so many however late it is."""
+
+
 def open_sections(
-    problem: ViewProblem, covered: NDArray[np.bool_], positions_enu_m: NDArray[np.float64], spacing_m: float
+    problem: ViewProblem,
+    covered: NDArray[np.bool_],
+    positions_enu_m: NDArray[np.float64],
+    spacing_m: float,
+    stop: Stop = never,
 ) -> tuple[OpenSection, ...]:
-    """All sections that may be seen and are not covered, and why.
+    """All sections that may be seen and are not covered, and why, as far as that is found before `stop`.
 
     Parameters
     ----------
@@ -161,29 +171,33 @@ def open_sections(
     elements = np.flatnonzero((reachability.verdicts != UNREACHABLE) & ~covered)
     is_known = reachability.verdicts.reshape(-1)[elements] == REACHABLE
     known = elements[is_known]
-    places, number = places_around(
-        problem, known, reachability.witnesses_enu_m.reshape(-1, 3)[known], np.random.default_rng(0)
-    )
-    kept = problem.flyable(places)
-    places, number = places[kept], number[kept]
-    is_apart = ~SpacingRule(places, positions_enu_m, spacing_m).are_too_close(places)
-    flyable, apart = set(number.tolist()), set(number[is_apart].tolist())
-    of_known = iter(
-        OpenReason.SEARCH if k in apart else OpenReason.SPACING if k in flyable else OpenReason.CUT_OFF
-        for k in range(len(known))
-    )
+    of_known, rng = len(known) * [OpenReason.LATE], np.random.default_rng(0)
+    for start, end in chunks(len(known), OPEN_PER_BLOCK):
+        if start > 0 and stop():
+            break
+        block = known[start:end]
+        places, number = places_around(problem, block, reachability.witnesses_enu_m.reshape(-1, 3)[block], rng)
+        kept = problem.flyable(places)
+        places, number = places[kept], number[kept]
+        is_apart = ~SpacingRule(places, positions_enu_m, spacing_m).are_too_close(places)
+        flyable, apart = set(number.tolist()), set(number[is_apart].tolist())
+        of_known[start:end] = (
+            OpenReason.SEARCH if k in apart else OpenReason.SPACING if k in flyable else OpenReason.CUT_OFF
+            for k in range(len(block))
+        )
+    why = iter(of_known)
     panel, section = np.divmod(elements, problem.model.grid.n_sections)
     return tuple(
-        OpenSection(int(panel[k]), int(section[k]), next(of_known) if is_known[k] else OpenReason.UNDECIDED)
+        OpenSection(int(panel[k]), int(section[k]), next(why) if is_known[k] else OpenReason.UNDECIDED)
         for k in range(len(elements))
     )
 
 
-REACHABILITY_SHARE, ROUTING_SHARE, FINISHING_SHARE = 0.3, 0.3, 0.2
-"""Parts of the time budget: what proofs of what can be reached may take at most, what is kept for routing, and what a
-choice of views takes to come to its end once it was asked to."""
+REACHABILITY_SHARE, ROUTING_SHARE, REROUTING_SHARE, FINISHING_SHARE = 0.3, 0.3, 0.1, 0.1
+"""Parts of the time budget: what proofs of what can be reached may take at most; what is kept for routing, less where
+views were chosen by their routes; and what a choice of views takes to come to its end once it was asked to."""
 
-ENDING_SHARE = 0.6
+ENDING_SHARE = 1.0
 """Of the time that a program spent before it planned, kept for what it does behind it: worth, proof and writing. Both
 grow with the size of a site and with the slowness of a computer."""
 
@@ -224,6 +238,8 @@ class Planned:
         chosen for something else.
     before_db
         The same with the photos alone that were there already; None without any.
+    is_cut_short
+        Fewer candidates were compared than there are, since the time budget did not last for all.
     """
 
     plan: Plan
@@ -237,6 +253,7 @@ class Planned:
     n_left_out: int = 0
     most_psnr_db: float | None = None
     before_db: float | None = None
+    is_cut_short: bool = False
 
 
 def plan_flight(
@@ -281,11 +298,12 @@ def plan_flight(
         prepared = _prepared(site_model, request, chosen_profile, proving, monitor)
     watch.lap("reachability")
     trace.record_bound(prepared.problem.reachability.upper_bound)
-    routing_s = float(np.clip(ROUTING_SHARE * request.time_budget_s, SHORTEST_ROUTING_S, LONGEST_ROUTING_S))
+    has_routes = request.n_batteries is not None or request.least_gain_db is not None
+    routing_share = REROUTING_SHARE if has_routes else ROUTING_SHARE
+    routing_s = float(np.clip(routing_share * request.time_budget_s, SHORTEST_ROUTING_S, LONGEST_ROUTING_S))
     finishing_s = FINISHING_SHARE * request.time_budget_s
-    choosing = any_of(stop, TimeLimit(max(0.1, limit.remaining_s() - routing_s - finishing_s)))
+    choosing = TimeLimit(max(0.1, limit.remaining_s() - routing_s - finishing_s), also=stop)
     problem = prepared.problem
-    # Loading what casts rays takes a second: where views are chosen for something else, after the time budget.
     judged = cache(partial(image_error_model, problem, site_model, request.greedy.surroundings, request.seed, photos))
     if request.least_gain_db is not None:
         n_batteries = _batteries_worth(problem, judged()[0], request, chosen_profile, choosing, monitor)
@@ -300,36 +318,42 @@ def plan_flight(
     if len(views.heading_rad) == 0:
         raise nothing_to_see()
     n_chosen = len(views.heading_rad)
-    if limit.remaining_s() < routing_s + ROUTING_SHARE * request.time_budget_s:
+    # What does not depend on ways comes before these, so that they get the time that is left.
+    error, decision = judged()
+    if limit.remaining_s() < routing_s + routing_share * request.time_budget_s:
         views = _that_can_be_routed(
             problem, views, chosen_for, request, chosen_profile, limit.remaining_s() - DRAWING_S
         )
     n_left_out = n_chosen - len(views.heading_rad)
+    seen = _seen(problem, views, request.locked)
     watch.lap("views")
     flights = _route(problem, views, request, chosen_profile, limit, routing_s, stop, monitor)
     while request.n_batteries is not None and len(flights) > request.n_batteries:
         flights = best_flights(problem.model, views, flights, request.n_batteries, n_locked, chosen_for)
         if len(flights) > request.n_batteries:  # all of them have locked views
             views = with_fewer_views(problem.model, views, n_locked)
+            seen = _seen(problem, views, request.locked)
             flights = _route(problem, views, request, chosen_profile, limit, routing_s, stop, monitor)
     watch.lap("routing")
-    error, decision = judged()
-    plan = _plan(site_model, request, chosen_profile, prepared, (*prepared.effects, decision), views, flights, trace)
+    seen = tuple(seen[view] for flight in flights for view in flight.views)
+    effects = (*prepared.effects, decision)
+    plan = _plan(site_model, request, chosen_profile, prepared, effects, views, flights, seen, trace)
     plan = replace(plan, worth=flight_worth(problem, error, plan, request.seed))
+    counts = section_counts(problem.model, seen)
     watch.lap("certificate")
-    reachability = problem.reachability
     return Planned(
         plan,
         prepared.findings,
         None if request.greedy.solid_angle_weights else found.bound,
-        reachability.n_undecided,
-        depth(problem.model, plan.viewpoints),
+        problem.reachability.n_undecided,
+        depth(problem.model, counts),
         watch.seconds,
         prepared,
-        _open_sections(problem, plan, request),
+        _open_sections(problem, plan, counts > 0, request, any_of(stop, limit)),
         n_left_out,
         None if found.least_error is None else expected_psnr_db(found.least_error),
         expected_psnr_db(error.most_error) if len(photos.heading_rad) else None,
+        found.is_cut_short,
     )
 
 
@@ -359,13 +383,21 @@ def _that_can_be_routed(
     return take(views, np.concatenate([np.flatnonzero(is_locked), n_locked + np.sort(chosen)]))
 
 
-def _open_sections(problem: ViewProblem, plan: Plan, request: PlanRequest) -> tuple[OpenSection, ...]:
+def _seen(problem: ViewProblem, views: ViewpointArrays, locked: tuple[Viewpoint, ...]) -> tuple[Sight, ...]:
+    """What each of the views covers as it is written; the first are the `locked` ones."""
+    n_views = len(views.heading_rad)
+    written = [locked[view] if view < len(locked) else _record("-", views, view) for view in range(n_views)]
+    return sights(problem.model, written)
+
+
+def _open_sections(
+    problem: ViewProblem, plan: Plan, covered: NDArray[np.bool_], request: PlanRequest, stop: Stop
+) -> tuple[OpenSection, ...]:
     wanted = (request.wanted_share or 0.0) * plan.coverage.reachable_upper_bound
     if plan.coverage.covered >= wanted:
         return ()
-    views = viewpoint_arrays(plan.viewpoints)
-    covered = exact_coverage(problem.model, views) > 0
-    return open_sections(problem, covered, views.positions_enu_m, plan.aircraft.min_waypoint_spacing_m)
+    positions_enu_m = viewpoint_arrays(plan.viewpoints).positions_enu_m
+    return open_sections(problem, covered, positions_enu_m, plan.aircraft.min_waypoint_spacing_m, stop)
 
 
 def _prepared(
@@ -397,7 +429,7 @@ def _choose(
     request: PlanRequest,
     chosen_profile: Profile,
     error: ImageErrorModel | None,
-    stop: Stop,
+    limit: TimeLimit,
     trace: Trace,
     monitor: Monitor,
 ) -> ViewSet:
@@ -411,14 +443,15 @@ def _choose(
             request.n_batteries,
             request.greedy,
             seed=request.seed,
-            stop=stop,
+            stop=limit,
             trace=trace,
             monitor=monitor,
             locked=locked,
             error=error,
+            remaining_s=limit.remaining_s,
         )
     optimiser = _optimiser(request, locked, chosen_profile.aircraft.min_waypoint_spacing_m, error)
-    return optimiser(problem, _goal(request), seed=request.seed, stop=stop, trace=trace, monitor=monitor)
+    return optimiser(problem, _goal(request), seed=request.seed, stop=limit, trace=trace, monitor=monitor)
 
 
 PROBED_VIEWS, PROBE_S, MOST_BATTERIES = 120, 1.0, 10
@@ -513,6 +546,7 @@ def _plan(
     effects: tuple[Decision, ...],
     views: ViewpointArrays,
     flights: tuple[Flight, ...],
+    seen: tuple[Sight, ...],
     trace: Trace,
 ) -> Plan:
     viewpoints, sorties = plan_records(views, flights, request.locked)
@@ -528,7 +562,7 @@ def _plan(
         constraints=prepared.constraints,
         viewpoints=viewpoints,
         sorties=sorties,
-        coverage=coverage(problem.model, viewpoints, problem.reachability),
+        coverage=coverage_of_sights(problem.model, seen, problem.reachability),
         history=tuple(points),
         origin=site.origin,
         home_enu_m=site.home_enu_m,

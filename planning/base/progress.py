@@ -46,19 +46,19 @@ def never() -> bool:
 
 
 class TimeLimit:
-    """Stop criterion: True once `seconds` have passed since it was made."""
+    """Stop criterion: True once `seconds` have passed since it was made, or once `also` holds."""
 
-    def __init__(self, seconds: float, clock: Clock = time.perf_counter) -> None:
-        self._clock = clock
+    def __init__(self, seconds: float, clock: Clock = time.perf_counter, also: Stop = never) -> None:
+        self._clock, self._also = clock, also
         self.deadline_s = clock() + seconds
 
     def __call__(self) -> bool:
         """True once the time is up."""
-        return self._clock() >= self.deadline_s
+        return self.remaining_s() <= 0.0
 
     def remaining_s(self) -> float:
         """Seconds left; never negative."""
-        return max(0.0, self.deadline_s - self._clock())
+        return 0.0 if self._also() else max(0.0, self.deadline_s - self._clock())
 
 
 class StopRequest:

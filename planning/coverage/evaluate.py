@@ -108,9 +108,8 @@ def coverage_of_sights(model: CoverageModel, seen: Iterable[Sight], reachability
     )
 
 
-def depth(model: CoverageModel, viewpoints: Sequence[Viewpoint], max_views: int = 4) -> tuple[DepthCount, ...]:
-    """How many sections are covered once, twice and so on up to `max_views` times."""
-    counts = coverage_counts(model, viewpoints)
+def depth(model: CoverageModel, counts: NDArray[np.int64], max_views: int = 4) -> tuple[DepthCount, ...]:
+    """How many sections are covered once, twice and so on up to `max_views` times, from `section_counts`."""
     return tuple(
         DepthCount(model.grid.step_deg, k, int(np.count_nonzero(counts >= k)), model.n_elements)
         for k in range(1, max_views + 1)

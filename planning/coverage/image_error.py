@@ -91,6 +91,15 @@ class Shown(NamedTuple):
     items: NDArray[np.int32]
     amounts: NDArray[np.float32]
 
+    @classmethod
+    def joined(cls, parts: Sequence[Shown]) -> Shown:
+        """All views of several, in order."""
+        ends = np.cumsum([0, *(part.starts[-1] for part in parts)])
+        starts = [np.zeros(1, np.int64), *(part.starts[1:] + end for part, end in zip(parts, ends, strict=False))]
+        items = np.concatenate([np.zeros(0, np.int32), *(part.items for part in parts)])
+        amounts = np.concatenate([np.zeros(0, np.float32), *(part.amounts for part in parts)])
+        return cls(np.concatenate(starts), items, amounts)
+
 
 def octahedral_cells(directions: Array, n: int) -> NDArray[np.int64]:
     """Numbers 0 to n^2 - 1 of directions, shape (k, 3), in the square that an octahedron folds out to."""

@@ -7,7 +7,8 @@ first, many times more than fit.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +18,11 @@ from planning.base.messages import say
 from planning.base.progress import Monitor, Stop, Trace
 from planning.coverage.image_error import ImageErrorModel
 from planning.coverage.model import CoverageModel, Elements, element_weights
+from planning.motion.timing import motion_limits, round_trip_metric
 from planning.parameters import FlightRules, GreedyParameters
 from planning.plan import Aircraft, ViewpointArrays
 from planning.routing.flights import Flight, FlightTimes, flight_times
+from planning.routing.legs import n_stops_within
 from planning.routing.orienteering import solve_orienteering
 from planning.routing.sorties import Sorties, plan_sorties
 from planning.viewpoints import cover_kernel as kernel
@@ -32,8 +35,12 @@ from planning.viewpoints.spacing import ANYWHERE, SpacingRule, rounding_spacing_
 
 Array = NDArray[np.float64]
 
-MAX_CANDIDATES = 700
-"""Candidates whose routes are compared: their leg table takes about a second."""
+MAX_CANDIDATES, FEWEST_CANDIDATES = 700, 100
+"""Candidates whose routes are compared, and those that are however late it is: their leg table takes some seconds."""
+
+LOOKING_SHARE, CHOOSING_SHARE, TABLE_SHARE = 0.3, 0.3, 0.5
+"""Parts of the time left: how long candidates are looked at; of what is left then, how long some of them are chosen,
+and how long ways between these are looked for. The rest is for the search."""
 
 CHOICE_DEPTHS = (1, 2, 3)
 """Candidates are the greedy choices for covering each section once, then twice and so on: variety to route by."""
@@ -94,11 +101,12 @@ def views_within_budget(
     monitor: Monitor,
     locked: ViewpointArrays = NONE_LOCKED,
     error: ImageErrorModel | None = None,
+    remaining_s: Callable[[], float] = lambda: math.inf,
 ) -> ViewSet:
     """Views that fit into `n_batteries` sorties and cover as much as could be found; with `error`, take most off it.
 
-    The bound on that holds for the candidates that were compared. Views that are `locked` come first in the result, as
-    they are.
+    The bound on that holds for the candidates that were compared: fewer where `remaining_s` says that time does not
+    last for all. Views that are `locked` come first in the result, as they are.
 
     Raises
     ------
@@ -108,18 +116,29 @@ def views_within_budget(
     monitor.report(say("trying viewpoints"), 0, 1)
     weights = element_weights(problem.model, parameters.solid_angle_weights)
     n_locked = len(locked.heading_rad)
-    n_free, covered = max(0, MAX_CANDIDATES - n_locked), covered_by(problem.model, locked)
+    covered = covered_by(problem.model, locked)
     spacing_m = rounding_spacing_m(aircraft.min_waypoint_spacing_m)
     choice = Choice(problem, weights, covered, locked, spacing_m, seed, stop, Trace(trace.clock), monitor)
-    free = candidate_pool(problem, seed, parameters.n_candidates)
+    free = candidate_pool(problem, seed, parameters.n_candidates, stop)
+    n_most, apart = max(0, MAX_CANDIDATES - n_locked), spacing_rule(free.views, locked, spacing_m)
+    is_cut_short = stop()
+
+    def n_in_time() -> int:
+        return min(n_most, _n_routed_in_time(problem, free.views, aircraft, rules, TABLE_SHARE * remaining_s()))
+
     if error is None:
+        n_free = n_in_time()
         free, _, _ = choice.greedily(free, n_free, np.inf)
         free = shortlist(free, weights, covered, n_free, spacing=spacing_rule(free.views, locked, spacing_m))
     else:
-        state = error_state(error, free.views, locked, spacing_rule(free.views, locked, spacing_m))
-        kept = np.zeros(len(state.bounds), np.bool_)
-        kept[choose_for_least_error(state, n_free, monitor)] = True
+        looking = _part_of(LOOKING_SHARE, remaining_s, stop)
+        state = error_state(error, free.views, locked, apart, monitor, looking)
+        is_cut_short = is_cut_short or len(state.bounds) < len(free.views.heading_rad)
+        n_free, choosing = n_in_time(), _part_of(CHOOSING_SHARE, remaining_s, stop)
+        kept = np.zeros(len(free.views.heading_rad), np.bool_)
+        kept[choose_for_least_error(state, n_free, monitor, choosing)] = True
         free = keep(free, kept)
+    is_cut_short = is_cut_short or n_free < n_most
     pool = join_pools(Pool(locked, problem.model.elements(locked)), free)
     times = flight_times(problem.roadmap, pool.views, aircraft, rules, monitor)
     cover = CoverGain(pool.elements, weights)
@@ -147,9 +166,26 @@ def views_within_budget(
     views = take(pool.views, chosen)
     if error is not None:
         trace.record(problem.model.covered_count(views))
-        return ViewSet(views, least_error=max(error.floor, error.most_error - selection.bound))
+        least = max(error.floor, error.most_error - selection.bound)
+        return ViewSet(views, least_error=least, is_cut_short=is_cut_short)
     everything = float(weights[np.unique(pool.elements.items)].sum())
-    return ViewSet(views, min(selection.bound, everything))
+    return ViewSet(views, min(selection.bound, everything), is_cut_short=is_cut_short)
+
+
+def _n_routed_in_time(
+    problem: ViewProblem, views: ViewpointArrays, aircraft: Aircraft, rules: FlightRules, seconds: float
+) -> int:
+    """Number of the views for which ways can be found in so many seconds."""
+    if math.isinf(seconds):
+        return MAX_CANDIDATES
+    metric = round_trip_metric(motion_limits(aircraft, rules))
+    return max(FEWEST_CANDIDATES, n_stops_within(problem.roadmap, views.positions_enu_m, metric, seconds))
+
+
+def _part_of(share: float, remaining_s: Callable[[], float], stop: Stop) -> Stop:
+    """Asks for an end where `stop` does, and once a share of the time that is left now has passed."""
+    left_s = (1.0 - share) * remaining_s()
+    return lambda: stop() or remaining_s() < left_s
 
 
 def _required(times: FlightTimes, n_locked: int, n_batteries: int, max_stops: int, seed: int, stop: Stop) -> Sorties:

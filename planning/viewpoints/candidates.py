@@ -51,8 +51,9 @@ class Pool(NamedTuple):
 def candidate_pool(problem: ViewProblem, seed: int, n_candidates: int = N_CANDIDATES, stop: Stop = never) -> Pool:
     """Views to choose from, rounded as plan files hold them, so that what is chosen is what is flown.
 
-    All can be flown to from home. When `stop` asks for an end, spread views not yet looked at are left out; where
-    it does so from the start, there are few, and none for the sections that these do not show.
+    All can be flown to from home. When `stop` asks for an end, views not yet looked at are left out; where it does so
+    before views for the sections that spread ones do not show are looked at, there are none of these, and where it does
+    so from the start, few of the others.
 
     Raises
     ------
@@ -67,10 +68,10 @@ def candidate_pool(problem: ViewProblem, seed: int, n_candidates: int = N_CANDID
         spread = take(spread, kept)
         spread_elements = problem.model.elements(spread)
     pool = Pool(spread, spread_elements)
-    if not is_late or len(spread_elements.items) == 0:
+    if not stop() or len(spread_elements.items) == 0:
         times_covered = np.bincount(spread_elements.items, minlength=problem.model.n_elements)
         witnesses = witness_candidates(problem, times_covered < WITNESS_COVERS_WANTED, rng)
-        pool = join_pools(pool, Pool(witnesses, problem.model.elements(witnesses)))
+        pool = join_pools(pool, Pool(*_elements_until(problem, witnesses, stop)))
     useful = np.diff(pool.elements.starts) > 0
     if not useful.any():
         raise nothing_to_see()
@@ -134,6 +135,7 @@ def places_around(
     seen_from_enu_m: Array,
     rng: np.random.Generator,
     n_most: int = MAX_AROUND,
+    stop: Stop = never,
 ) -> tuple[Array, NDArray[np.int64]]:
     """Places from which elements are seen, if nothing is between: those given, and further allowed ones around them.
 
@@ -143,6 +145,8 @@ def places_around(
         A place for each of the elements, shape (k, 3).
     n_most
         Places tried at a time, about.
+    stop
+        Asked before each time.
 
     Returns
     -------
@@ -153,6 +157,8 @@ def places_around(
     panel, section = np.divmod(elements, problem.model.grid.n_sections)
     places, number = seen_from_enu_m, np.arange(len(elements))
     for is_first in (True, *(N_STRETCHES * (False,))):
+        if stop():
+            break
         of = np.repeat(np.arange(len(elements)), n_each)
         if is_first:
             low, high = np.log(AROUND_M)

@@ -106,6 +106,9 @@ NO_ELEMENTS = np.zeros(0, np.int32)
 NEAR_SPACINGS = 3.0
 """What views within so many spacings of a place alone cover may be seen from elsewhere, to make room there."""
 
+CHOICE = 2
+"""Candidates for each view that is wanted, at least, however late it is."""
+
 IDLE_ROUNDS = 6
 """Further candidates for what views too close to others would show are tried until so many rounds bring nothing."""
 
@@ -240,22 +243,24 @@ class Choice:
         self, pool: Pool, n_wanted: int, error: ImageErrorModel, parameters: GreedyParameters
     ) -> ViewSet:
         """The locked views and those after which the expected error is least, with the bounds of both objectives."""
-        state = error_state(error, pool.views, self.locked, spacing_rule(pool.views, self.locked, self.spacing_m))
+        apart = spacing_rule(pool.views, self.locked, self.spacing_m)
+        state = error_state(error, pool.views, self.locked, apart, self.monitor, self.stop, CHOICE * n_wanted)
         at_first = least_error(state, error, n_wanted)
-        chosen = choose_for_least_error(state, n_wanted, self.monitor)
+        chosen = choose_for_least_error(state, n_wanted, self.monitor, self.stop)
+        is_cut_short = self.stop()
         views = concatenate([self.locked, take(pool.views, chosen)])
         covered = self.covered + np.bincount(
             np.concatenate([NO_ELEMENTS, *(pool.elements.of(each) for each in chosen)]), minlength=len(self.weights)
         )
         self.trace.record(int(np.count_nonzero(covered)))
         if not parameters.certify:
-            return ViewSet(views)
+            return ViewSet(views, is_cut_short=is_cut_short)
         self.monitor.report(say("bounding the optimum"), 0, 1)
         # Each holds by itself: the one from nothing is closer for few views, the one from the views chosen for many.
         least = max(at_first, least_error(state, error, n_wanted))
         known = float(self.weights[covered > 0].sum())
         bound = _bound(pool.elements, self.weights, self.covered, len(chosen), known, self.stop)
-        return ViewSet(views, bound, least)
+        return ViewSet(views, bound, least, is_cut_short)
 
     def _with_more_places(
         self,
@@ -275,7 +280,7 @@ class Choice:
         alone = [(e, positions[k]) for k in near for e in pool.elements.of(chosen[k]) if counts[e] == 1]
         elements = np.concatenate([lost, np.array([e for e, _ in alone], np.int64)])
         places = np.concatenate([seen_from, np.array([place for _, place in alone]).reshape(-1, 3)])
-        views = spaced_views(self.problem, elements, places, positions, rng)
+        views = spaced_views(self.problem, elements, places, positions, rng, self.stop)
         return join_pools(pool, Pool(views, self.problem.model.elements(views)))
 
     def _chosen(

@@ -21,10 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.effects import Assessment, Decision, EffectSetting, decide
-from planning.base.jit import kernel
+from planning.base.jit import chunks, kernel
 from planning.base.messages import say
-from planning.base.progress import QUIET, Monitor
-from planning.coverage.image_error import COLUMNS, FLOOR, ROWS, TERMS, ImageErrorModel, decibels
+from planning.base.progress import QUIET, Monitor, Stop, never
+from planning.coverage.image_error import COLUMNS, FLOOR, ROWS, TERMS, ImageErrorModel, Shown, decibels
 from planning.coverage.mirrored_rays import Surroundings
 from planning.plan import BatteryWorth, Camera, FlightWorth, Plan, ViewpointArrays, viewpoint_arrays
 from planning.site.records import SiteModel
@@ -52,8 +52,8 @@ DEVIATION_DB, FAR_DEVIATION_DB, NEAR_SHARE = 0.75, 2.95, 0.35
 larger one where less than this share of what panes mirror is near, halfway between `court` (0.5) and `planar-far`
 (0.2): models of that one come out so much better."""
 
-SLICE = 16
-"""Views chosen between two looks at the clock, at least."""
+SLICE, VIEWS_PER_BLOCK = 16, 500
+"""Views chosen, and candidates looked at, between two looks at the clock, at least."""
 
 NO_GAIN = 1e-12
 """Of all weights together: gains up to it are rounding."""
@@ -190,15 +190,16 @@ def fill_gains(state: ErrorState, gains: NDArray[np.float64]) -> None:
 
 
 @kernel
-def greedy_steps(state: ErrorState, chosen: NDArray[np.int64], n_chosen: int, n_wanted: int) -> int:
+def greedy_steps(state: ErrorState, chosen: NDArray[np.int64], n_chosen: int, n_wanted: int, is_looked_at: bool) -> int:
     """Add the candidate of the largest gain until `n_wanted` are chosen or nothing is gained.
 
+    Without `is_looked_at` bounds are taken for gains.
     None is chosen twice: its bound is minus infinity from then on. So is that of one too close to another.
     """
     least = NO_GAIN * state.weights.sum()
     while n_chosen < n_wanted:
         best, looked_at = int(np.argmax(state.bounds)), -1
-        while best != looked_at and state.bounds[best] > least:
+        while is_looked_at and best != looked_at and state.bounds[best] > least:
             state.bounds[best] = gain_of(state, best)
             looked_at, best = best, int(np.argmax(state.bounds))
         if state.bounds[best] <= least:
@@ -216,16 +217,29 @@ def error_state(
     views: ViewpointArrays,
     locked: ViewpointArrays = NONE_LOCKED,
     spacing: SpacingRule = ANYWHERE,
+    monitor: Monitor = QUIET,
+    stop: Stop = never,
+    n_least: int = 0,
 ) -> ErrorState:
-    """Candidates with nothing chosen yet; what `locked` views show is known all the same."""
-    shown, present = model.shown(views), model.shown(locked)
-    n = len(views.heading_rad)
+    """Candidates with nothing chosen yet; what `locked` views show is known all the same.
+
+    When `stop` asks for an end, those not yet looked at are left out: the state has the first of the candidates only,
+    `n_least` or more, under the same numbers.
+    """
+    parts: list[Shown] = []
+    for start, end in chunks(len(views.heading_rad), VIEWS_PER_BLOCK):
+        if parts and start >= n_least and stop():
+            break
+        monitor.report(say("trying viewpoints"), start, len(views.heading_rad))
+        parts.append(model.shown(take(views, np.arange(start, end))))
+    shown, present = Shown.joined(parts), model.shown(locked)
+    n = len(shown.starts) - 1
     state = ErrorState(
         *shown,
         weights=model.weights,
         sums=np.bincount(present.items, present.amounts, model.n_elements).astype(np.float64),
         bounds=np.zeros(n),
-        positions=np.array(spacing.positions_enu_m, np.float64, order="C").reshape(-1, 3),
+        positions=np.array(spacing.positions_enu_m, np.float64, order="C").reshape(-1, 3)[:n],
         taken=np.array(spacing.present_enu_m, np.float64, order="C").reshape(-1, 3),
         spacing=float(spacing.spacing_m),
     )
@@ -233,13 +247,18 @@ def error_state(
     return state
 
 
-def choose_for_least_error(state: ErrorState, n_wanted: int, monitor: Monitor) -> NDArray[np.int64]:
-    """Numbers of candidates chosen greedily, in order, at most `n_wanted`; the state holds them afterwards."""
+def choose_for_least_error(state: ErrorState, n_wanted: int, monitor: Monitor, stop: Stop = never) -> NDArray[np.int64]:
+    """Numbers of candidates chosen greedily, in order, at most `n_wanted`; the state holds them afterwards.
+
+    When `stop` asks for an end, the others are those whose gains were largest when they were looked at last.
+    """
     chosen, n_chosen = np.zeros(min(n_wanted, len(state.bounds)), np.int64), 0
     while n_chosen < len(chosen):
+        if stop():
+            return chosen[: int(greedy_steps(state, chosen, n_chosen, len(chosen), False))]
         monitor.report(say("choosing views"), n_chosen, len(chosen))
         slice_end = min(len(chosen), n_chosen + SLICE)
-        n_now = int(greedy_steps(state, chosen, n_chosen, slice_end))
+        n_now = int(greedy_steps(state, chosen, n_chosen, slice_end, True))
         if n_now < slice_end:
             return chosen[:n_now]
         n_chosen = n_now

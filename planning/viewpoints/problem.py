@@ -60,12 +60,14 @@ class ViewSet:
     """Chosen views, in no order that matters.
 
     `bound` is an upper bound on what as many views of the same candidates could cover, and `least_error` a lower one on
-    the expected error that they could leave; None where a method has none.
+    the expected error that they could leave; None where a method has none. `is_cut_short` says that fewer candidates
+    were compared than there are, since an end was asked for.
     """
 
     views: ViewpointArrays
     bound: float | None = None
     least_error: float | None = None
+    is_cut_short: bool = False
 
 
 class Optimiser(Protocol):

@@ -12,11 +12,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.jit import chunks
+from planning.base.progress import Stop, never
 from planning.coverage.model import CoverageModel, codes_all_around
 from planning.coverage.positions import aimed_views, rounded
 from planning.plan import POSITION_DECIMALS, ViewpointArrays
 from planning.viewpoints.candidates import places_around
 from planning.viewpoints.problem import ViewProblem, take
+
+PLACES_PER_BLOCK = 500
+"""Places of which ways from home are looked for between two looks at the clock."""
 
 MAX_LOST, MAX_LOST_SHARE = 1, 1 / 2000
 """Elements that clearing one place may cost, as a number and as a part of those covered, whichever is more: an aircraft
@@ -116,6 +121,7 @@ def spaced_views(
     seen_from_enu_m: NDArray[np.float64],
     chosen_enu_m: NDArray[np.float64],
     rng: np.random.Generator,
+    stop: Stop = never,
 ) -> ViewpointArrays:
     """Further flyable views for elements whose views are too close to others, each aimed at its panel, as written.
 
@@ -130,14 +136,20 @@ def spaced_views(
         A place from which each is seen, shape (k, 3).
     chosen_enu_m
         Where views are chosen, shape (n, 3).
+    stop
+        When it asks for an end, places not yet looked at are left out.
     """
     model = problem.model
     panel, section = np.divmod(elements, model.grid.n_sections)
     places = np.unique(chosen_enu_m, axis=0)
     codes = codes_all_around(model, places)[panel]
     element, place = np.nonzero(codes == section[:, None] + 1)
-    around, number = places_around(problem, elements, seen_from_enu_m, rng)
-    kept = problem.flyable(around)
+    around, number = places_around(problem, elements, seen_from_enu_m, rng, stop=stop)
+    kept = np.zeros(len(around), np.bool_)
+    for start, end in chunks(len(around), PLACES_PER_BLOCK):
+        if stop():
+            break
+        kept[start:end] = problem.flyable(around[start:end])
     positions = np.concatenate([places[place], around[kept]])
     targets = model.frames.centroids[panel[np.concatenate([element, number[kept]])]]
     views = rounded(aimed_views(positions, targets, model.camera), model.camera)

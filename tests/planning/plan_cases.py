@@ -208,3 +208,14 @@ def inside_zone(points_enu_m: Floats, zone: NoFlyZone) -> NDArray[np.bool_]:
 def paths(plan: Plan) -> list[Floats]:
     """Vertices of each sortie's path."""
     return [np.array(sortie.path_enu_m, np.float64) for sortie in plan.sorties]
+
+
+class StopAfter:
+    """Stop criterion that does not hold the first `n` times it is asked."""
+
+    def __init__(self, n: int) -> None:
+        self.left = n
+
+    def __call__(self) -> bool:
+        self.left -= 1
+        return self.left < 0

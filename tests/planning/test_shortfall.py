@@ -20,7 +20,7 @@ from planning.planner import OpenReason, open_sections, plan_flight
 from planning.request import PlanRequest
 from planning.site.records import Obstacle, SiteModel
 from planning.viewpoints.prepare import prepare
-from tests.planning.plan_cases import turned_site
+from tests.planning.plan_cases import StopAfter, turned_site
 
 NEAR = Constraints(min_distance_m=8.0)
 EVERYTHING = PlanRequest(share=1.0, constraints=NEAR, greedy=GreedyParameters(1000, certify=False))
@@ -53,13 +53,18 @@ def test_a_share_that_spacing_keeps_from_being_reached_names_it_and_the_panels()
     assert free.open_sections == ()
 
 
-def test_sections_that_more_views_would_cover_are_told_from_those_never_decided() -> None:
+def test_sections_that_more_views_would_cover_are_told_from_those_never_decided(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     problem = prepare(strip(), profile("m3e").camera, NEAR).problem
     reachable = problem.reachability.verdicts != 0
     nothing = np.zeros(reachable.shape, np.bool_)
     found = open_sections(problem, nothing, np.zeros((0, 3)), 0.5)
     assert len(found) == reachable.sum()
     assert {each.why for each in found} == {OpenReason.SEARCH}
+    monkeypatch.setattr("planning.planner.OPEN_PER_BLOCK", 100)
+    late = Counter(each.why for each in open_sections(problem, nothing, np.zeros((0, 3)), 0.5, StopAfter(1)))
+    assert late == {OpenReason.SEARCH: 200, OpenReason.LATE: len(found) - 200}
     verdicts = problem.reachability.verdicts.copy()
     verdicts[verdicts == REACHABLE] = UNDECIDED
     undecided = replace(problem, reachability=replace(problem.reachability, verdicts=verdicts))

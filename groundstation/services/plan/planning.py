@@ -24,7 +24,7 @@ from planning.checks.zones import source_text
 from planning.insight.flight_profile import lowest_flight
 from planning.parameters import GreedyParameters
 from planning.plan import Plan, Viewpoint, write_plan
-from planning.planner import OpenReason, Planned, plan_flight
+from planning.planner import MOST_BATTERIES, OpenReason, Planned, plan_flight
 from planning.proof.make import proof_path
 from planning.proof.separation import separate
 from planning.request import PlanRequest
@@ -178,19 +178,18 @@ def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
         )
         yield Finding(Severity.WARNING, "time-budget", text, "", float(n_left_out), 0.0, "views")
     n_views = len(plan.viewpoints)
+    is_late = planned.is_cut_short or planned.n_left_out > 0
+    no_more = say("more views would show nothing new or could not be flown")
+    reason = say("the time did not last for more; allow it more time") if is_late else no_more
+    severity = Severity.WARNING if is_late else Severity.NOTE
     if request.n_views is not None and n_views < request.n_views and not planned.n_left_out:
-        text = say(
-            "{} views instead of the {} asked for: more would show nothing new or could not be flown",
-            n_views,
-            request.n_views,
-        )
-        yield Finding(Severity.NOTE, "fewer-views", text, "", float(n_views), float(request.n_views), "views")
+        text = say("{} views instead of the {} asked for: {}", n_views, request.n_views, reason)
+        yield Finding(severity, "fewer-views", text, "", float(n_views), float(request.n_views), "views")
     n_sorties, n_batteries = len(plan.sorties), request.n_batteries
     if n_batteries is not None and n_sorties < n_batteries:
-        text = say(
-            "takes {} of {} batteries: more views would show nothing new or could not be flown", n_sorties, n_batteries
-        )
-        yield Finding(Severity.NOTE, "fewer-sorties", text, "", float(n_sorties), float(n_batteries), "sorties")
+        text = say("takes {} of {} batteries: {}", n_sorties, n_batteries, reason)
+        yield Finding(severity, "fewer-sorties", text, "", float(n_sorties), float(n_batteries), "sorties")
+    yield from _not_good_enough(request, planned, is_late)
     wanted = request.wanted_share
     if wanted is None:
         return
@@ -203,6 +202,24 @@ def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
         yield Finding(Severity.WARNING, "less-coverage", text, "", share, wanted)
         if request.method == "greedy":
             yield from why_open(planned)
+
+
+def _not_good_enough(request: PlanRequest, planned: Planned, is_late: bool) -> Iterator[Finding]:
+    """Where a plan that was to stop at a gain could gain more: batteries are decided on before their routes are."""
+    worth, least_db = planned.plan.worth, request.least_gain_db
+    if worth is None or least_db is None or round(worth.gain_db, 1) <= round(least_db, 1):
+        return
+    n_batteries = len(worth.batteries)
+    if is_late:
+        reason = say("the time did not last for more; allow it more time")
+    elif n_batteries >= MOST_BATTERIES:
+        reason = say("no more batteries than {} are taken without being asked for", MOST_BATTERIES)
+    else:
+        reason = say("fewer photos fit into a battery than expected; ask for {} batteries", n_batteries + 1)
+    text = say(
+        "another battery would bring {:.1f} dB, more than the {:g} to stop at: {}", worth.gain_db, least_db, reason
+    )
+    yield Finding(Severity.WARNING, "not-good-enough", text, "", worth.gain_db, least_db, "dB")
 
 
 def _zones(site_model: SiteModel) -> Iterator[Finding]:
@@ -252,6 +269,7 @@ def why_open(planned: Planned) -> Iterator[Finding]:
             plan.aircraft.name,
         ),
         OpenReason.SEARCH: say("can be covered; allow it more time"),
+        OpenReason.LATE: say("stay open, and the time did not last to find out why; allow it more time"),
     }
     for why, text in texts.items():
         on = [panels[each.panel].id for each in planned.open_sections if each.why is why]

@@ -49,7 +49,7 @@ def test_counts_are_those_of_the_contract(step_deg: float, occlusion: bool) -> N
     seen = seen_by_contract(kiosk(), CAMERA, viewpoints(), step_deg, occlusion)
     found = {(int(j), int(k)): int(counts[j, k]) for j, k in zip(*np.nonzero(counts), strict=True)}
     assert found == dict(seen)
-    for count in depth(model(step_deg, occlusion), viewpoints()):
+    for count in depth(model(step_deg, occlusion), counts):
         assert count.covered == sum(times >= count.n_views for times in seen.values())
         assert (count.step_deg, count.total) == (step_deg, counts.size)
 
@@ -79,4 +79,4 @@ def test_a_view_tells_its_nearest_and_furthest_panel() -> None:
 def test_no_viewpoints_cover_nothing() -> None:
     assert coverage_counts(model(), ()).sum() == 0
     assert sights(model(), ()) == ()
-    assert [count.covered for count in depth(model(), (), 2)] == [0, 0]
+    assert [count.covered for count in depth(model(), coverage_counts(model(), ()), 2)] == [0, 0]

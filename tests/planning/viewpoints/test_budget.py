@@ -6,6 +6,7 @@ import functools
 import itertools
 import math
 from dataclasses import replace
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -23,15 +24,16 @@ from planning.parameters import Constraints, FlightRules, GreedyParameters
 from planning.plan import ViewpointArrays
 from planning.planner import plan_flight
 from planning.request import PlanRequest
-from planning.routing.flights import Flight, flight_times
-from planning.routing.roadmap import build_roadmap
+from planning.routing.flights import Flight, FlightTimes, flight_times
+from planning.routing.roadmap import Roadmap, build_roadmap
 from planning.site.bundled import SCENES
 from planning.site.free_space import free_space
 from planning.site.records import panel_corners
 from planning.viewpoints.budget import best_flights, views_within_budget
 from planning.viewpoints.candidates import Pool, candidate_pool, keep
+from planning.viewpoints.least_error import image_error_model
 from planning.viewpoints.problem import ViewProblem, take
-from tests.planning.plan_cases import kiosk
+from tests.planning.plan_cases import StopAfter, kiosk
 from tests.slow import slow
 
 M3E = profile("m3e").aircraft
@@ -150,6 +152,44 @@ def test_trace_counts_sections_whatever_they_weigh() -> None:
 def test_a_battery_that_reaches_no_view_is_refused_with_its_time() -> None:
     with pytest.raises(InfeasibleError, match="reached and left again within 6 s of one battery"):
         choose(6.0, 3)
+
+
+@pytest.mark.parametrize("objective", ["sections", "image-error"])
+def test_fewer_candidates_are_compared_where_the_time_does_not_last(
+    objective: Literal["sections", "image-error"], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Seconds are said, not measured."""
+    compared: list[int] = []
+
+    def counted(roadmap: Roadmap, views: ViewpointArrays, *arguments: Any, **named: Any) -> FlightTimes:
+        compared.append(len(views.heading_rad))
+        return flight_times(roadmap, views, *arguments, **named)
+
+    monkeypatch.setattr("planning.viewpoints.budget.flight_times", counted)
+    monkeypatch.setattr("planning.viewpoints.budget.MAX_CANDIDATES", 40)
+    monkeypatch.setattr("planning.viewpoints.budget.FEWEST_CANDIDATES", 15)
+    error = None if objective == "sections" else image_error_model(problem(), kiosk())[0]
+    found = [
+        views_within_budget(
+            problem(),
+            M3E,
+            rules_for(45.0),
+            1,
+            FEW,
+            seed=0,
+            stop=StopAfter(30),
+            trace=Trace(),
+            monitor=QUIET,
+            error=error,
+            remaining_s=remaining_s,
+        )
+        for remaining_s in (lambda: 1e-9, lambda: 1e9, lambda: math.inf)
+    ]
+    assert compared[0] <= 15 < compared[1] == compared[2]
+    assert found[0].is_cut_short
+    assert problem().model.covered_count(found[0].views) > 0
+    for late, ample in zip(found[1].views, found[2].views, strict=True):
+        assert np.array_equal(late, ample)
 
 
 def test_cancelling_comes_through() -> None:

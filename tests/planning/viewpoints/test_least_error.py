@@ -30,6 +30,7 @@ from planning.viewpoints.candidates import candidate_pool, spread_candidates
 from planning.viewpoints.least_error import (
     DEVIATION_DB,
     FAR_DEVIATION_DB,
+    NO_GAIN,
     ErrorGain,
     ErrorState,
     add_or_remove,
@@ -48,6 +49,7 @@ from planning.viewpoints.spacing import SpacingRule
 from planning.viewpoints.unseen import random_views, walk_views
 from reconstruction.scenes.light.pane_surfaces import pane_light
 from reconstruction.scenes.record import Glass
+from tests.planning.plan_cases import StopAfter
 
 TILT = Term("tilt", 0.01, 0.0025)
 
@@ -144,6 +146,48 @@ def test_lazy_greedy_chooses_what_looking_at_all_gains_each_time_does(state, n_w
     assert value_of(state, set(chosen.tolist())) == pytest.approx(
         value_of(state, set(expected)), rel=1e-5, abs=1e-8 * scale
     )
+
+
+@given(made_states(), st.integers(1, 8))
+def test_a_choice_that_is_stopped_takes_as_many_by_their_gains_at_first(state, n_wanted):
+    at_first = state.bounds.copy()
+    chosen = choose_for_least_error(state, n_wanted, QUIET, StopAfter(0))
+    least = NO_GAIN * float(state.weights.sum())
+    assert len(chosen) == min(n_wanted, np.count_nonzero(at_first > least))
+    assert np.array_equal(chosen, np.argsort(-at_first, kind="stable")[: len(chosen)])
+    assert error_taken(state) == pytest.approx(value_of(state, set(chosen.tolist())), rel=1e-6)
+
+
+def test_a_choice_that_is_stopped_later_is_no_worse_and_one_with_time_enough_is_the_same(monkeypatch):
+    monkeypatch.setattr("planning.viewpoints.least_error.SLICE", 4)
+    views, error, n_wanted = candidates(), model(), 20
+    whole = choose_for_least_error(error_state(error, views), n_wanted, QUIET)
+    left = []
+    for n_asked in range(6):
+        state = error_state(error, views)
+        chosen = choose_for_least_error(state, n_wanted, QUIET, StopAfter(n_asked))
+        assert len(set(chosen.tolist())) == n_wanted
+        assert np.array_equal(chosen[: 4 * n_asked], whole[: 4 * n_asked])
+        left.append(error.error_of(state.sums))
+    assert max(left) == left[0] > left[-1] == min(left)
+    assert np.array_equal(chosen, whole)
+
+
+@pytest.mark.parametrize(("n_asked", "n_least", "n_blocks"), [(0, 0, 1), (2, 0, 3), (0, 25, 3), (1000, 0, None)])
+def test_candidates_not_looked_at_in_time_are_left_out_and_the_others_are_as_ever(
+    n_asked, n_least, n_blocks, monkeypatch
+):
+    monkeypatch.setattr("planning.viewpoints.least_error.VIEWS_PER_BLOCK", 10)
+    views, error = candidates(), model()
+    whole = error_state(error, views)
+    some = error_state(error, views, stop=StopAfter(n_asked), n_least=n_least)
+    n = len(whole.bounds) if n_blocks is None else 10 * n_blocks
+    assert len(some.bounds) == n
+    n_items = whole.starts[n]
+    assert np.array_equal(some.starts, whole.starts[: n + 1])
+    assert np.array_equal(some.items, whole.items[:n_items])
+    assert np.array_equal(some.amounts, whole.amounts[:n_items])
+    assert np.array_equal(some.bounds, whole.bounds[:n])
 
 
 def test_greedy_is_within_its_own_bound_and_far_above_drawn_views():

@@ -29,13 +29,13 @@ from planning.routing.roadmap import build_roadmap
 from planning.site.free_space import free_space
 from planning.site.records import SiteModel, panel_corners
 from planning.viewpoints import cover_kernel as kernel
-from planning.viewpoints.candidates import places_around
-from planning.viewpoints.greedy import greedy
+from planning.viewpoints.candidates import candidate_pool, places_around
+from planning.viewpoints.greedy import Choice, greedy
 from planning.viewpoints.improve import Exchange, cover_state
 from planning.viewpoints.prepare import prepare
-from planning.viewpoints.problem import Goal, ViewProblem, take
+from planning.viewpoints.problem import NONE_LOCKED, Goal, ViewProblem, take
 from planning.viewpoints.spacing import MAX_LOST, MAX_LOST_SHARE, SpacingRule, merge_close_views
-from tests.planning.plan_cases import kiosk, turned_site
+from tests.planning.plan_cases import StopAfter, kiosk, turned_site
 
 Floats = NDArray[np.float64]
 
@@ -226,6 +226,23 @@ def assert_more_views_never_show_less(site_model: SiteModel, counts: tuple[int, 
     n_reachable = problem.reachability.n_reachable
     assert covered == sorted(covered), f"{covered} of {n_reachable}"
     assert covered[-1] >= 0.97 * n_reachable, f"{covered} of {n_reachable}"
+
+
+def test_room_for_views_is_looked_for_until_an_end_is_asked_for_and_never_loses_anything() -> None:
+    """However often it is asked in a round. With time enough the result is the one without a limit."""
+    site_model = turned_site(33.0, n_rows=4, n_columns=5, panel_m=(1.2, 1.2), foot_m=6.0)
+    problem = prepare(site_model, profile("m3e").camera, Constraints(min_distance_m=8.0)).problem
+    nothing, weights = np.zeros(problem.model.n_elements, np.int32), np.ones(problem.model.n_elements)
+    pool, values = candidate_pool(problem, 0, 300), []
+    for stop in (*(StopAfter(n) for n in (0, 1, 5, 9, 20, 60, 10**6)), never):
+        choice = Choice(problem, weights, nothing, NONE_LOCKED, 1.0, 0, stop, Trace(), QUIET)
+        more, chosen, value = choice.greedily(pool, 80, np.inf)
+        away_m = pdist(more.views.positions_enu_m[chosen])
+        assert away_m[away_m > 0.0].min() >= 1.0
+        assert value == problem.model.covered_count(take(more.views, chosen))
+        values.append(value)
+    assert min(values) == values[0] < values[-1]
+    assert values[-2] == values[-1]
 
 
 @st.composite

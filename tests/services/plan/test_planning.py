@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from groundstation.services.plan.planning import (
+    _shortfalls,
     check_files,
     finding_summary,
     locked_viewpoints,
@@ -99,6 +100,24 @@ def test_a_plan_that_falls_short_of_the_request_says_so(site, request_, codes):
     assert [finding.code for finding in planned.findings] == codes
     for finding in planned.findings:
         assert finding.value < finding.limit
+
+
+def test_no_end_of_gains_is_claimed_that_the_plan_written_does_not_have(site):
+    """The clock is made to have run out long before: too few candidates are compared for what the battery could do."""
+    office, stop_at = SCENES["office"](), PlanRequest(least_gain_db=0.2, greedy=QUICK, time_budget_s=5.0)
+    late = plan_document_site(office, stop_at, started_s=time.perf_counter() - 1000.0)
+    worth = late.plan.worth
+    assert late.is_cut_short
+    assert worth.gain_db > 0.25, "or there is nothing to tell"
+    told = {finding.code: finding for finding in late.findings}["not-good-enough"]
+    assert told.severity is Severity.WARNING
+    assert (told.value, told.limit) == (worth.gain_db, 0.2)
+    assert f"{worth.gain_db:.1f} dB" in told.message
+    assert "time did not last" in told.message
+    assert worth.batteries[-1].n_photos == len(late.plan.viewpoints)
+    assert worth.batteries[-1].n_batteries == len(late.plan.sorties)
+    reached = _shortfalls(replace(stop_at, least_gain_db=worth.gain_db + 0.1), late)
+    assert "not-good-enough" not in {finding.code for finding in reached}
 
 
 def test_the_goal_that_stands_where_none_was_set_is_not_missed_in_silence(site):
