@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import statistics
 import tempfile
 import threading
@@ -10,13 +11,16 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import torch
 
+from reconstruction.gpu import device as devices
 from reconstruction.gpu.device import Adapter, adapters, open_device, why_no_gpu
 from reconstruction.light.reflective_panels import ModelName
 from reconstruction.metrics.image_metrics import psnr_db
+from reconstruction.splats.rasterising import wgpu_backend
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.rasteriser import rasterise
 from reconstruction.training.callbacks import Callbacks, TrainingSnapshot
@@ -42,6 +46,23 @@ MOST_APART_DB = 0.2
 
 N_VIEWS, WIDTH_PX = 12, 256
 
+OTHER_BINS_PX, BIN_TURNS = (8, 32), 2
+
+ADDING_LANES = 1 << 18
+MULTIPLY_ADDS = """
+enable f16;
+@group(0) @binding(0) var<storage, read_write> found: array<f32>;
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) lane: vec3u) {
+    var sums = vec4<KIND>(KIND(lane.x % 7u));
+    let factors = vec4<KIND>(KIND(0.5), KIND(0.25), KIND(0.125), KIND(0.75));
+    for (var turn = 0u; turn < 256u; turn++) {
+        sums = fma(sums, factors, factors);
+    }
+    found[lane.x] = f32(sums.x + sums.y + sums.z + sums.w);
+}
+"""
+
 LIGHTS: tuple[ModelName | None, ...] = (None, "environment-map", "mlp")
 VIEWS = 3
 """Pictures of a model, of which the least time counts."""
@@ -63,7 +84,11 @@ def measure(context: Context) -> Iterator[Row]:
     yield Row(card.name, f"{card.backend}, {card.driver}", kind)
     cases = QUICK_CASES if context.is_quick else SOFTWARE_CASES if card.is_software else CASES
     for size, n in cases:
-        yield from _of_rasterisers(synthetic_scene(size, n), f"{size[0]} x {size[1]}, {n} splats")
+        scene, name = synthetic_scene(size, n), f"{size[0]} x {size[1]}, {n} splats"
+        yield from _of_rasterisers(scene, name)
+        if (size, n) == cases[0]:
+            yield from _of_bins(scene, name)
+    yield from _of_half_precision(card)
     (width, _), n = cases[0] if card.is_software else cases[-1]
     # A network of its own for each pixel takes a program in the place of a card minutes.
     for light in LIGHTS[:2] if card.is_software else LIGHTS:
@@ -91,6 +116,59 @@ def _of_rasterisers(scene: Scene, name: str) -> Iterator[Row]:
             )  # fmt: skip
         apart = max(float((a - b).norm() / b.norm()) for a, b in zip(_gradients(scene), expected, strict=True))
         yield Row(name, f"gradients, card, {what}, from the processor's, at most", f"{apart:.1e}", "of 1")
+
+
+def _of_bins(scene: Scene, name: str) -> Iterator[Row]:
+    """Sides of the squares that splats are listed by, against the one in use; in turns, so that load hits all alike."""
+    patch_rows = open_device().group // wgpu_backend.PATCH_COLUMNS * wgpu_backend.LANE_ROWS
+    sides = (wgpu_backend.BIN_PX, *(side for side in OTHER_BINS_PX if side >= patch_rows))
+    found = dict.fromkeys(sides, (math.inf, math.inf))
+    for _ in range(BIN_TURNS):
+        for side in sides:
+            constants = wgpu_backend.CONSTANTS | {"BIN": side}
+            with mock.patch.multiple(wgpu_backend, BIN_PX=side, CONSTANTS=constants):
+                found[side] = min(
+                    found[side], _both(scene, replace(ANTIALIASED, on_gpu=True)), key=lambda each: each[1]
+                )
+    for side in sides[1:]:
+        ratio = found[side][1] / found[sides[0]][1]
+        what = f"forward and backward, card, bins of {side} pixels, time of the processor"
+        against = f"as long as with bins of {sides[0]} pixels"
+        yield Row(name, what, round(1e3 * found[side][1], 1), "ms", ratio, against)
+
+
+def _of_half_precision(card: Adapter) -> Iterator[Row]:
+    """Multiply-adds alone in float16, against float32: what it could bring at most."""
+    raw = dict(devices._found())[card]
+    if "shader-f16" not in raw.features:
+        yield Row(card.name, "multiply-adds in float16", "not offered by the driver")
+        return
+    device = raw.request_device_sync(required_features=["shader-f16"])
+    out = device.create_buffer(size=4 * ADDING_LANES, usage="STORAGE | COPY_SRC")
+    seconds = {}
+    for kind in ("f32", "f16"):
+        module = device.create_shader_module(code=MULTIPLY_ADDS.replace("KIND", kind))
+        pipeline = device.create_compute_pipeline(layout="auto", compute={"module": module, "entry_point": "main"})
+        layout = pipeline.get_bind_group_layout(0)
+        group = device.create_bind_group(layout=layout, entries=[{"binding": 0, "resource": {"buffer": out}}])
+        runs = []
+        for _ in range(REPEATS):
+            encoder = device.create_command_encoder()
+            work = encoder.begin_compute_pass()
+            work.set_pipeline(pipeline)
+            work.set_bind_group(0, group)
+            work.dispatch_workgroups(ADDING_LANES // 64)
+            work.end()
+            started, processor = time.perf_counter(), time.process_time()
+            device.queue.submit([encoder.finish()])
+            device.queue.read_buffer(out, 0, 4)
+            lasted = time.process_time() - processor if card.is_software else time.perf_counter() - started
+            runs.append(lasted)
+        seconds[kind] = min(runs)
+    ratio = seconds["f16"] / seconds["f32"]
+    of = "time of the processor" if card.is_software else "time"
+    what = f"multiply-adds in float16, {of}"
+    yield Row(card.name, what, round(1e3 * seconds["f16"], 1), "ms", ratio, "as long as in float32")
 
 
 def _gradients(scene: Scene) -> list[torch.Tensor]:
