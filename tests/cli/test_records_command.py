@@ -96,6 +96,14 @@ def test_refusals_are_one_line_and_change_nothing(reflight, folder, arguments, w
     assert (folder / "records.sqlite").read_bytes() == before
 
 
+def test_objects_are_called_as_those_who_look_after_the_building_call_them(reflight, folder):
+    lines = reflight("records", folder, "list").out.splitlines()
+    words = {line.split()[0]: line.split()[2].rstrip(",") for line in lines[:-1]}
+    assert set(words.values()) <= {"building", "facade", "panel", "background"}
+    assert words["A-0003"] == "panel"
+    assert words["A"] == "facade"
+
+
 def test_without_records_the_way_to_some_is_told(reflight, tmp_path):
     assert "'records FOLDER make --objects SITE'" in reflight("records", tmp_path, "list").error
     assert reflight("records", tmp_path).status == 2

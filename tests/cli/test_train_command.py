@@ -226,6 +226,18 @@ def test_training_and_scoring_say_the_same_number(reflight, tmp_path, n_without)
     assert f"{scored['psnr_db']:.2f} dB on {of}" in text.out
 
 
+@pytest.mark.slow
+def test_of_a_site_without_panels_no_facade_is_spoken_of(reflight, glass, tmp_path):
+    data = tmp_path / "data"
+    shutil.copytree(glass / "data", data)
+    described = json.loads((data / "dataset.json").read_text())
+    (data / "dataset.json").write_text(json.dumps({**described, "panels": []}))
+    for path in (data / "panels").iterdir():
+        assert cv2.imwrite(str(path), np.zeros_like(cv2.imread(str(path), cv2.IMREAD_UNCHANGED)))
+    text = reflight("train", data, "-o", tmp_path / "model", *quick(glass), "--method", "2dgs").out
+    assert " dB on 1 unseen view\n" in text
+
+
 def test_what_cannot_be_done_is_refused_in_words(reflight, glass, tmp_path):
     data, model = glass / "data", glass / "model"
     assert "has no dataset.json" in reflight("train", glass, "-o", tmp_path / "m").error

@@ -131,8 +131,9 @@ def run_make(options: argparse.Namespace) -> int:
     return 0
 
 
+BACKGROUND = "background"
 LAYERS = {"scene": "building", "component": "facade", "element": "panel"}
-"""Objects of the model in the words of those who look after the building."""
+"""Objects of the model in the words of those who look after the building; what is on no facade is "background"."""
 
 
 def run_list(options: argparse.Namespace) -> int:
@@ -159,7 +160,8 @@ def run_list(options: argparse.Namespace) -> int:
         inspected, worst = line["last_inspection"], line["worst_open_defect"]
         seen = say("inspected {}", inspected) if inspected else say("never inspected")
         defect = say(", open: {} ({})", worst, line["severity"]) if line["severity"] else ""
-        show(glue(f"{line['name']:<12} {line['global_id']}  ", LAYERS[line["layer"]], ", ", seen, defect))
+        what = BACKGROUND if line["name"] == BACKGROUND else LAYERS[line["layer"]]
+        show(glue(f"{line['name']:<12} {line['global_id']}  ", what, ", ", seen, defect))
     show(counted(len(lines), "object"))
     return 0
 

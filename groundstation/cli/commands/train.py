@@ -142,15 +142,16 @@ def _print(result: TrainedFiles, options: argparse.Namespace) -> None:
         tell("  mirrored light: {}{}", name, "" if record.config.light == "auto" else say(", as you asked"))
     for decision in record.decisions:
         show(glue("  ", decision))
-    tell("  {} in {:.0f} s{}", counted(trained.n_steps, "step"), trained.seconds, _told_quality(trained.quality))
+    told = _told_quality(trained.quality, bool(record.site.panels))
+    tell("  {} in {:.0f} s{}", counted(trained.n_steps, "step"), trained.seconds, told)
     print_notes(trained.notes, sys.stderr)
     print_next("score", result.folder, data_set_of(options.dataset))
 
 
-def _told_quality(quality: Quality | None) -> str:
-    """What `score` says of the same views."""
+def _told_quality(quality: Quality | None, has_panels: bool) -> str:
+    """What `score` says of the same views; without panels masks have all of each photo, and no facade."""
     if quality is None:
         return ""
-    if quality.is_of_facades:
+    if quality.is_of_facades and has_panels:
         return say(", {:.2f} dB on facades of {}", quality.psnr_db, counted(quality.n_views, "unseen view"))
     return say(", {:.2f} dB on {}", quality.psnr_db, counted(quality.n_views, "unseen view"))
