@@ -128,17 +128,18 @@ def views_within_budget(
 
     if error is None:
         n_free = n_in_time()
+        is_cut_short = is_cut_short or n_free < min(n_most, len(free.views.heading_rad))
         free, _, _ = choice.greedily(free, n_free, np.inf)
         free = shortlist(free, weights, covered, n_free, spacing=spacing_rule(free.views, locked, spacing_m))
     else:
         looking = _part_of(LOOKING_SHARE, remaining_s, stop)
         state = error_state(error, free.views, locked, apart, monitor, looking)
-        is_cut_short = is_cut_short or len(state.bounds) < len(free.views.heading_rad)
-        n_free, choosing = n_in_time(), _part_of(CHOOSING_SHARE, remaining_s, stop)
-        kept = np.zeros(len(free.views.heading_rad), np.bool_)
+        n_free, n_known = n_in_time(), len(free.views.heading_rad)
+        is_cut_short = is_cut_short or len(state.bounds) < n_known or n_free < min(n_most, n_known)
+        kept = np.zeros(n_known, np.bool_)
+        choosing = _part_of(CHOOSING_SHARE, remaining_s, stop)
         kept[choose_for_least_error(state, n_free, monitor, choosing)] = True
         free = keep(free, kept)
-    is_cut_short = is_cut_short or n_free < n_most
     pool = join_pools(Pool(locked, problem.model.elements(locked)), free)
     times = flight_times(problem.roadmap, pool.views, aircraft, rules, monitor)
     cover = CoverGain(pool.elements, weights)

@@ -179,6 +179,9 @@ def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
         yield Finding(Severity.WARNING, "time-budget", text, "", float(n_left_out), 0.0, "views")
     n_views = len(plan.viewpoints)
     is_late = planned.is_cut_short or planned.n_left_out > 0
+    if planned.is_cut_short:
+        text = say("the time did not last to compare as many viewpoints as usual; allow it more time")
+        yield Finding(Severity.NOTE, "few-compared", text)
     no_more = say("more views would show nothing new or could not be flown")
     reason = say("the time did not last for more; allow it more time") if is_late else no_more
     severity = Severity.WARNING if is_late else Severity.NOTE

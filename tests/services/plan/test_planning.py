@@ -97,8 +97,10 @@ def test_no_more_views_are_left_out_than_the_time_asks_for(site):
 )
 def test_a_plan_that_falls_short_of_the_request_says_so(site, request_, codes):
     planned = plan_site(site, request_, None)
-    assert [finding.code for finding in planned.findings] == codes
-    for finding in planned.findings:
+    # Whether half a second lasts to compare all viewpoints depends on the computer.
+    told = [finding for finding in planned.findings if finding.code != "few-compared"]
+    assert [finding.code for finding in told] == codes
+    for finding in told:
         assert finding.value < finding.limit
 
 
@@ -109,7 +111,9 @@ def test_no_end_of_gains_is_claimed_that_the_plan_written_does_not_have(site):
     worth = late.plan.worth
     assert late.is_cut_short
     assert worth.gain_db > 0.25, "or there is nothing to tell"
-    told = {finding.code: finding for finding in late.findings}["not-good-enough"]
+    codes = {finding.code: finding for finding in late.findings}
+    assert codes["few-compared"].severity is Severity.NOTE
+    told = codes["not-good-enough"]
     assert told.severity is Severity.WARNING
     assert (told.value, told.limit) == (worth.gain_db, 0.2)
     assert f"{worth.gain_db:.1f} dB" in told.message
