@@ -5,17 +5,18 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from planning.plan import ViewpointArrays
 from planning.routing.sorties import SortieProblem, sortie_durations_s
-from tests.benchmarks import next_battery
+from tests.benchmarks import flight_worth, next_battery
 from tests.benchmarks.__main__ import main, run_all
 from tests.benchmarks.catalogue import BENCHMARKS
 from tests.benchmarks.fresh_process import run_command
-from tests.benchmarks.harness import Benchmark, Row, Skipped, machine
+from tests.benchmarks.harness import Benchmark, Context, Row, Skipped, machine
 from tests.benchmarks.mission_files import largest_errors
 from tests.benchmarks.plan_routing import nearest_sorties
 from tests.benchmarks.report import number_text, recorded_rows
@@ -104,6 +105,21 @@ def test_seeds_of_the_next_battery_that_are_recorded_are_not_flown_again(monkeyp
     rows = next_battery.measure_scene("planar", recorded, is_quick=False)
     with pytest.raises(AssertionError, match="planar is flown again"):
         list(rows)
+
+
+def test_flights_whose_worth_is_recorded_are_not_flown_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    flown = []
+
+    def worth_tradeoff(request, *_, **__):
+        flown.append((request.scene, request.width_px))
+        return SimpleNamespace(found=[])
+
+    monkeypatch.setattr(flight_worth, "worth_tradeoff", worth_tradeoff)
+    recorded = recorded_rows("worth", Path("docs/benchmarks"), is_quick=False)
+    kept = [row for row in recorded if not row.what.startswith("256 px: ")]
+    assert list(flight_worth.measure(Context(False, Path("docs/benchmarks"), tuple(kept)))) == kept
+    assert ("planar", 256) in flown
+    assert len(flown) <= 2, "only what is not recorded"
 
 
 def test_a_real_benchmark_runs_quickly_end_to_end(tmp_path: Path) -> None:
