@@ -33,8 +33,8 @@ FURTHER = {
     "Reflection MLP": ("planar", {"lights": ("mlp",)}),
     "joint splats": ("planar", {"lights": ("splats",)}),
 }
-"""What else models and flights may be, each with one seed and so many photos: the scene, and what differs there. A photo
-of 512 pixels' width takes 4.5 s of a core to render, ten times one of 128."""
+"""What else models and flights may be, each with one seed and so many photos: the scene, and what differs there. With
+512 px a photo takes 4.5 s of a core, and a model some minutes."""
 
 BETTER_DB, FAR_DB = 1.0, 0.2
 
