@@ -185,7 +185,7 @@ def write_new_ifc(book: RecordBook, out: Path, mesh: TriangleMesh | None = None)
     Raises
     ------
     InputError
-        There is no object, the records are damaged, or the file cannot be written.
+        There is no panel, the records are damaged, or the file cannot be written.
     """
     check_output(out, [book.path])
     with book.database.snapshot():
@@ -194,6 +194,8 @@ def write_new_ifc(book: RecordBook, out: Path, mesh: TriangleMesh | None = None)
         attributes = {(each.global_id, each.name): each.value for each in book.entries(Attribute)}
     if not rows:
         raise InputError(say("holds no objects yet; 'records FOLDER make' takes them from a site", place=book.path))
+    if not any(row.layer == "element" for row in rows):
+        raise InputError(say("not written: there are no panels; choose other components", place=out))
     building = _Building(rows, origin)
     for row in rows:
         building.add(row, attributes)

@@ -413,6 +413,10 @@ def test_panes_that_are_warped_or_lack_corners_and_places_unknown(tmp_path):
     with RecordBook(tmp_path / "b.sqlite", True, "Chan") as book:
         with pytest.raises(InputError, match="holds no objects yet"):
             write_new_ifc(book, tmp_path / "a.ifc")
+        book.set_objects(rows[:2])
+        with pytest.raises(InputError, match="there are no panels"):
+            write_new_ifc(book, tmp_path / "a.ifc")
+        assert not (tmp_path / "a.ifc").exists()
         book.set_objects(rows)
         notes = write_new_ifc(book, tmp_path / "a.ifc")
     assert [note[:25] for note in notes] == ["the place on earth is not", "the building behind the p"]
