@@ -207,7 +207,7 @@ DRAWING_S = 0.3
 FEWEST_ROUTED = 100
 """Routing gets at least and at most this long; 560 views gain nothing more after 1 s (docs/benchmarks.md). `DRAWING_S`
 of the budget is kept for what comes after the search, and is the least that it gets. So many views are
-routed however late it is."""
+routed, for each battery that is asked for, however late it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -374,7 +374,8 @@ def _that_can_be_routed(
     """The most telling of the views, by what they were chosen for, as many as ways can be found for in time."""
     metric = round_trip_metric(motion_limits(chosen_profile.aircraft, request.rules))
     n_locked = len(request.locked)
-    n_views = max(FEWEST_ROUTED, n_locked, n_stops_within(problem.roadmap, views.positions_enu_m, metric, seconds))
+    n_fewest = FEWEST_ROUTED * (request.n_batteries or 1)
+    n_views = max(n_fewest, n_locked, n_stops_within(problem.roadmap, views.positions_enu_m, metric, seconds))
     if error is None or len(views.heading_rad) <= n_views:
         return most_covering(problem.model, views, n_views, n_locked)
     is_locked = np.arange(len(views.heading_rad)) < n_locked

@@ -36,7 +36,8 @@ from planning.viewpoints.spacing import ANYWHERE, SpacingRule, rounding_spacing_
 Array = NDArray[np.float64]
 
 MAX_CANDIDATES, FEWEST_CANDIDATES = 700, 100
-"""Candidates whose routes are compared, and those that are however late it is: their leg table takes some seconds."""
+"""Candidates whose routes are compared: their leg table takes some seconds. So few for each battery are, however late
+it is."""
 
 LOOKING_SHARE, CHOOSING_SHARE, TABLE_SHARE = 0.3, 0.3, 0.5
 """Parts of the time left: how long candidates are looked at; of what is left then, how long some of them are chosen,
@@ -124,7 +125,8 @@ def views_within_budget(
     is_cut_short = stop()
 
     def n_in_time() -> int:
-        return min(n_most, _n_routed_in_time(problem, free.views, aircraft, rules, TABLE_SHARE * remaining_s()))
+        in_time = _n_routed_in_time(problem, free.views, aircraft, rules, TABLE_SHARE * remaining_s())
+        return min(n_most, max(FEWEST_CANDIDATES * n_batteries, in_time))
 
     if error is None:
         n_free = n_in_time()
@@ -180,7 +182,7 @@ def _n_routed_in_time(
     if math.isinf(seconds):
         return MAX_CANDIDATES
     metric = round_trip_metric(motion_limits(aircraft, rules))
-    return max(FEWEST_CANDIDATES, n_stops_within(problem.roadmap, views.positions_enu_m, metric, seconds))
+    return n_stops_within(problem.roadmap, views.positions_enu_m, metric, seconds)
 
 
 def _part_of(share: float, remaining_s: Callable[[], float], stop: Stop) -> Stop:
