@@ -150,7 +150,7 @@ class PointGains:
         Factors on the linear light of each photo, red, green and blue, shape (n, 3), beyond those that were known; the
         mean of their logarithms is 0. As far as two halves of the points disagree, they are nearer to 1.
     spread
-        Standard deviation over photos of the logarithms, of what both halves agree on.
+        Standard deviation over photos of the logarithms: what both halves agree on, as far as points then look alike.
     n_told
         Photos that enough points are seen in, and that show them.
     outliers
@@ -296,7 +296,20 @@ def gains_from_points(
     off = float(np.square(one - other).mean()) / 4.0
     if agreed > 0.0:
         gains[is_told] = 0.5 * (one + other) * agreed / (agreed + off)
-    return PointGains(np.exp(gains), math.sqrt(max(agreed, 0.0)), n_told, outliers)
+    spread = math.sqrt(max(agreed, 0.0) * _explained(seen[is_told], gains[is_told]))
+    return PointGains(np.exp(gains), spread, n_told, outliers)
+
+
+def _explained(seen: Array, gains: Array) -> float:
+    """Share of what photos differ by, squared and in the middle, that gains take away, 0 to 1; `seen` as in `_gains`.
+
+    Frames that are a pixel wide, and points beside where poses say, look brighter or darker in whole photos, too, but
+    not by one factor.
+    """
+    before, after = (
+        float(np.nanmedian(np.abs(light - np.nanmedian(light, axis=0)))) for light in (seen, seen - gains[:, None])
+    )
+    return max(0.0, 1.0 - (after / before) ** 2) if before > 0.0 else 0.0
 
 
 def _outliers(seen: Array, is_told: NDArray[np.bool_]) -> tuple[int, ...]:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import torch
 
+from planning.base.effects import decide
 from planning.geo.mesh import empty_mesh, from_corners
 from reconstruction.dataset.records import coloured_ply
 from reconstruction.light.config import ReflectionConfig
@@ -171,6 +172,44 @@ def test_nothing_is_told_where_photos_were_exposed_alike(tmp_path):
     gains, decision = exposed(source, "on")
     assert decision.on
     np.testing.assert_allclose(gains, 1.0, atol=0.02)
+
+
+FRAME_M, PANE_M, OFF_PX = 0.2, 0.5, 4.0
+
+
+def framed(folder, gains):
+    """Photos of the wall with panes that mirror something else to each photo, and points on the frames around them."""
+    source = painted(folder, np.ones((N, 3)))
+    for number, (photo, gain) in enumerate(zip(source.photos, gains, strict=True)):
+        lens = photo.intrinsics
+        y, x = np.mgrid[: 4 * lens.height_px, : 4 * lens.width_px] / 4.0 + 0.125
+        origins, directions = photo.rays(np.column_stack([x.ravel(), y.ravel()]))
+        places = origins - origins[:, 1:2] / directions[:, 1:2] * directions
+        is_pane = (np.mod(places[:, [0, 2]] + 0.5 * FRAME_M, PANE_M) > FRAME_M).all(axis=1)
+        mirrored = patches(photo, number).mean(axis=2) * np.exp(np.random.default_rng(number).normal(0.0, 0.3))
+        mirrored = np.repeat(np.repeat(mirrored, 4, axis=0), 4, axis=1).ravel()[:, None]
+        light = np.where(is_pane[:, None], mirrored, paint(places)).reshape(*y.shape, 3)
+        light = cv2.resize(light, (lens.width_px, lens.height_px), interpolation=cv2.INTER_AREA)
+        show_something_else(photo, np.minimum(gain * light, 1.0))
+    points = POINTS.copy()
+    points[::2, 0] = PANE_M * np.rint(points[::2, 0] / PANE_M)
+    points[1::2, 2] = PANE_M * np.rint(points[1::2, 2] / PANE_M)
+    return source, points
+
+
+def turned_by(photo, off_px, seed):
+    turn = cv2.Rodrigues(np.random.default_rng(seed).normal(0.0, off_px / photo.intrinsics.fx_px, 3))[0]
+    return replace(photo, pose=replace(photo.pose, cam_from_enu=turn @ photo.pose.cam_from_enu))
+
+
+@pytest.mark.parametrize("is_exposed", [False, True])
+def test_what_frames_show_of_glass_beside_them_is_no_exposure(tmp_path, is_exposed):
+    """Beside where poses say, frames look like the panes, which are brighter and darker from photo to photo."""
+    source, points = framed(tmp_path, GAINS if is_exposed else np.ones((N, 3)))
+    photos = [turned_by(photo, OFF_PX, number) for number, photo in enumerate(source.photos)]
+    found = gains_from_points(source, photos, points, empty_mesh())
+    assert np.log(found.gains).std(axis=0).mean() > OwnExposures().tolerance, "both halves of the points agree on gains"
+    assert decide(OwnExposures(), found).on is is_exposed
 
 
 def test_off_looks_at_no_photo(tmp_path):
