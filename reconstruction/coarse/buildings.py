@@ -119,7 +119,7 @@ def make_buildings(
     parameters = parameters or BuildingParameters()
     ground = ground or find_ground(cloud.points, parameters.cell_m)
     walls = find_walls(cloud, ground, parameters, monitor)
-    walls = without_mirrored(walls, cloud.centres)
+    walls = without_mirrored(walls, cloud)
     roofs, roof_points = find_roofs(cloud, walls, ground, parameters)
     if not walls:
         note = say("no wall was found: the points say too little; come closer, and take photos that overlap more")
@@ -141,15 +141,17 @@ def make_buildings(
     return Buildings(ground, tuple(walls), tuple(roofs), from_corners(corners), faces, others, notes)
 
 
-def without_mirrored(walls: Sequence[Wall], centres: Array) -> list[Wall]:
-    """Walls without those that are seen through others alone: mirror images, and rooms behind windows.
+def without_mirrored(walls: Sequence[Wall], cloud: Cloud) -> list[Wall]:
+    """Walls without those that were seen through others alone: mirror images, and rooms behind windows.
 
-    Larger walls come first, and count against smaller ones that stand behind them for most cameras.
+    Larger walls come first, and count against smaller ones that stand behind them for most cameras that saw these; a
+    wall on a lane is behind the house opposite for most of a ring, which did not see it.
     """
     kept: list[Wall] = []
     for wall in walls:
         middle = np.array([*wall.line.mean(axis=0), 0.5 * (wall.bottom_m + wall.top_m)])
-        ahead = centres[centres[:, :2] @ wall.normal > wall.offset_m]
+        ahead = cloud.centres[_that_saw(wall, cloud)]
+        ahead = ahead[ahead[:, :2] @ wall.normal > wall.offset_m]
         if not len(ahead):
             kept.append(wall)
             continue
@@ -160,6 +162,20 @@ def without_mirrored(walls: Sequence[Wall], centres: Array) -> list[Wall]:
         if hidden.mean() < 0.8:
             kept.append(wall)
     return kept
+
+
+def _that_saw(wall: Wall, cloud: Cloud) -> NDArray[np.int64]:
+    """Rows of the cameras that saw points on a wall, once for each point."""
+    points = cloud.points
+    along = points[:, :2] @ wall.along
+    is_on = np.abs(points[:, :2] @ wall.normal - wall.offset_m) < max(ON_WALL_M, 3.0 * wall.rms_m)
+    is_on &= (along >= wall.ends_m[0]) & (along <= wall.ends_m[1])
+    is_on &= (points[:, 2] >= wall.bottom_m) & (points[:, 2] <= wall.top_m)
+    return cloud.cameras[np.repeat(is_on, np.diff(cloud.starts))]
+
+
+ON_WALL_M = 0.1
+"""Points nearer to a wall are on it."""
 
 
 def _crossing(starts: Array, ends: Array, wall: Wall, grown_m: float = 0.0, behind_m: float = 0.3) -> Array:

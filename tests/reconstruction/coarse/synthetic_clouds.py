@@ -39,8 +39,10 @@ def _block(rng, low, high, top, spacing):
 
 
 @cache
-def made_cloud(seed: int = 0, glass_m: float = 0.0, mirrored: int = 0, spacing: float = 0.35) -> Cloud:
-    """Points of both wings and the ground.
+def made_cloud(
+    seed: int = 0, glass_m: float = 0.0, mirrored: int = 0, spacing: float = 0.35, blocks: tuple = (TALL, LOW)
+) -> Cloud:
+    """Points of both wings, or other blocks, and the ground.
 
     Parameters
     ----------
@@ -50,21 +52,21 @@ def made_cloud(seed: int = 0, glass_m: float = 0.0, mirrored: int = 0, spacing: 
         Number of points seen in it, behind the wall.
     """
     rng = np.random.default_rng(seed)
-    parts = [*_block(rng, *TALL, spacing), *_block(rng, *LOW, spacing)]
+    parts = [part for block in blocks for part in _block(rng, *block, spacing)]
     n = int(60.0 * 60.0 / (3.0 * spacing) ** 2)
     ground = np.column_stack([rng.uniform(-30.0, 30.0, (n, 2)), np.zeros(n)])
-    inside = [((ground[:, :2] > low) & (ground[:, :2] < high)).all(axis=1) for low, high, _ in (TALL, LOW)]
-    points = np.concatenate([*parts, ground[~inside[0] & ~inside[1]]])
+    inside = [((ground[:, :2] > low) & (ground[:, :2] < high)).all(axis=1) for low, high, _ in blocks]
+    points = np.concatenate([*parts, ground[~np.any(inside, axis=0)]])
     pane = (np.abs(points[:, 0] + 2.0) < glass_m / 2.0) & (np.abs(points[:, 1] + 6.0) < 0.01) & (points[:, 2] > 1.0)
     points = points[~(pane & (points[:, 2] < 14.0))]
     # Inside of the joint between the wings nothing is seen.
     joint = (np.abs(points[:, 0] - 8.0) < 0.01) & (points[:, 2] < LOW[2]) & (points[:, 1] < 2.0)
-    points = points[~joint]
+    points = points[~joint] if LOW in blocks else points
     points = points + rng.normal(0.0, SIGMA_M, points.shape)
     centres = cameras()
     rows, seen = [], []
     for row, point in enumerate(points):
-        near = [k for k in np.argsort(np.linalg.norm(centres - point, axis=1)) if _is_open(centres[k], point)]
+        near = [k for k in np.argsort(np.linalg.norm(centres - point, axis=1)) if _is_open(centres[k], point, blocks)]
         if len(near) >= 3:
             rows.append(row)
             seen.append(near[:4])
@@ -90,9 +92,9 @@ def made_cloud(seed: int = 0, glass_m: float = 0.0, mirrored: int = 0, spacing: 
     return Cloud(points, rgb, sigmas, towards, counts, starts, watching, centres)
 
 
-def _is_open(camera, point) -> bool:
+def _is_open(camera, point, blocks) -> bool:
     """Whether no block stands between a camera and a point on its skin."""
-    for low, high, top in (TALL, LOW):
+    for low, high, top in blocks:
         box_low, box_high = np.array([*low, -1.0]) + 0.15, np.array([*high, top]) - 0.15
         way = point - camera
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -56,6 +56,23 @@ def test_each_wing_has_its_own_height(plain):
     assert not np.isfinite(height_at(plain, 13.0, 5.0))
 
 
+def test_houses_side_by_side_each_have_walls_and_a_roof():
+    """One side of the row was flown along more often: from there the walls on the lane are behind the first house."""
+    houses = (((-16.0, -6.0), (-4.0, 6.0), 15.0), ((4.0, -5.0), (14.0, 5.0), 12.0))
+    cloud = made_cloud(blocks=houses)
+    row = np.column_stack([np.full(60, -40.0), np.linspace(-8.0, 8.0, 60), np.full(60, 5.0)])
+    found = make_buildings(replace(cloud, centres=np.concatenate([cloud.centres, row])), SIZES)
+    for (x, y), (u, v), top in houses:
+        assert height_at(found, (x + u) / 2, (y + v) / 2) == pytest.approx(top, abs=0.15)
+        ends = np.array([face.ends_m for face in found.faces if face.top_m == pytest.approx(top, abs=0.15)])
+        assert len(ends) == 4
+        assert ends.min(axis=(0, 1)) == pytest.approx((x, y), abs=0.1)
+        assert ends.max(axis=(0, 1)) == pytest.approx((u, v), abs=0.1)
+    assert not np.isfinite(height_at(found, 0.0, 0.0))
+    assert all(face.wall is not None for face in found.faces), "none is guessed"
+    assert not found.others
+
+
 @pytest.mark.slow
 def test_glass_is_closed_by_its_frame_and_mirror_images_are_no_walls(glazed):
     hits = RayCaster(glazed.mesh).cast(np.array([[-2.0, -50.0, 7.0]]), np.array([[0.0, 1.0, 0.0]]))
