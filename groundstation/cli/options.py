@@ -411,6 +411,11 @@ def add_pose_arguments(parser: Any) -> None:
         metavar="PX",
         help="longer side that photos are reduced to for refining: smaller is quicker, larger better (default 1600)",
     )
+    add(
+        "--find-lens",
+        choices=("auto", "on", "off"),
+        help="with --refine, find the lens from the photos; auto: a calibration stays unless they contradict it",
+    )
     add("--heights", choices=("auto", "takeoff", "absolute"), default="auto", help="which heights of photos count")
 
 
@@ -426,8 +431,9 @@ def refine_request(options: argparse.Namespace) -> RefineRequest | None:
 
     if options.refine:
         with in_words_of_options():
-            return RefineRequest(options.refined, options.refine_size)
-    for option, value in (("--refined", options.refined), ("--refine-size", options.refine_size)):
+            return RefineRequest(options.refined, options.refine_size, options.find_lens)
+    others = {"--refined": options.refined, "--refine-size": options.refine_size, "--find-lens": options.find_lens}
+    for option, value in others.items():
         if value is not None:
             raise InputError(say("belongs to --refine, which was not given", place=option))
     return None

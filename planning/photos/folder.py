@@ -24,6 +24,8 @@ OTHER_PICTURES = (".png", ".tif", ".tiff", ".webp", ".bmp")
 UNDECODED = (".dng", ".heic", ".heif", ".arw", ".cr2", ".cr3", ".nef", ".raf", ".rw2", ".orf")
 """Photos of formats that are not read."""
 
+VIDEOS = (".mp4", ".mov", ".m4v", ".mts", ".avi", ".mkv")
+
 N_THREADS = 8
 """Cards and network folders answer several requests at once; reading the metadata itself takes less than 1 ms."""
 
@@ -89,12 +91,13 @@ def _paths(folder: Path, posed_elsewhere: bool) -> list[Path]:
             else say("expected a folder of photos, found nothing", place=folder)
         )
     problems: list[OSError] = []
-    pictures = [
+    files = [
         Path(inside, name)
         for inside, _, names in os.walk(folder, onerror=problems.append)
         for name in names
-        if name.lower().endswith(SUFFIXES + OTHER_PICTURES + UNDECODED) and not name.startswith(".")
+        if name.lower().endswith(SUFFIXES + OTHER_PICTURES + UNDECODED + VIDEOS) and not name.startswith(".")
     ]
+    pictures = [path for path in files if path.suffix.lower() not in VIDEOS]
     if problems:
         raise InputError.say("cannot be read ({})", problems[0].strerror, place=problems[0].filename) from problems[0]
     paths = [path for path in pictures if path.suffix.lower() in SUFFIXES]
@@ -106,6 +109,13 @@ def _paths(folder: Path, posed_elsewhere: bool) -> list[Path]:
             "wrote into them",
             len(pictures),
             min(pictures).name,
+            place=folder,
+        )
+    if files:
+        raise InputError.say(
+            "holds no .jpg photo, but videos, the first {}; fly again and take photos: videos do not say where each "
+            "picture was taken",
+            min(files).name,
             place=folder,
         )
     raise InputError.say("holds no .jpg photo; name the folder that was copied from the camera's card", place=folder)

@@ -65,10 +65,7 @@ from reconstruction.coarse.placing import (
     Measured,
     Placed,
     about_height,
-    about_lens,
     about_positions,
-    contradicts,
-    in_sigmas,
     place_model,
 )
 from reconstruction.coarse.plane_sweep import PICTURE_PX as SWEPT_PX
@@ -82,6 +79,7 @@ from reconstruction.colmap.pycolmap_run import (
     Pair,
     RefineParameters,
     StartPhoto,
+    about_lens,
     as_model,
     do_not_fit,
     load_colmap,
@@ -108,6 +106,8 @@ class CoarseParameters:
         Of each photo.
     least_contrast
         Of a feature: less than is usual, since walls are what is looked for, and many are plain.
+    find_lens
+        Whether lenses are found against what is stated of them: `reconstruction.colmap.pycolmap_run.FoundLens`.
     """
 
     max_image_size_px: int = 1600
@@ -115,6 +115,7 @@ class CoarseParameters:
     least_contrast: float = 0.003
     pairs: PairParameters = field(default_factory=PairParameters)
     seed: int = 0
+    find_lens: EffectSetting = "auto"
 
     def __post_init__(self) -> None:
         for name in ("max_image_size_px", "max_features"):
@@ -248,7 +249,7 @@ def build_coarse(
     taken = _taken(folder, photos, stated)
     if len(taken.names) < LEAST_PHOTOS:
         raise InputError(_too_few(photos, taken, damaged))
-    taken = replace(taken, findings=(*damaged, *taken.findings))
+    taken = replace(taken, findings=(*damaged, *_days_apart(taken.metadata), *taken.findings))
     colmap = load_colmap()
     _prepare_folder(kept, taken, parameters)
     run = _run(colmap, kept, folder, taken, parameters, monitor)
@@ -308,7 +309,8 @@ def build_coarse(
 
 
 def _too_few(photos: Sequence[PhotoMetadata], taken: _Taken, damaged: Sequence[Finding]) -> Any:
-    n_others = len(photos) - len(taken.names)
+    copies = [finding for finding in taken.findings if finding.code == COPIED]
+    n_others = len(photos) - len(taken.names) - sum(int(finding.value or 0) for finding in copies)
     if damaged and n_others == 0:
         return say(
             "a coarse model needs at least {} photos, and {} of {} are whole; the first other: {}",
@@ -316,6 +318,13 @@ def _too_few(photos: Sequence[PhotoMetadata], taken: _Taken, damaged: Sequence[F
             len(photos),
             len(photos) + len(damaged),
             damaged[0].message,
+        )
+    if copies:
+        return say(
+            "a coarse model needs at least {} photos taken from different places, got {}; {}",
+            LEAST_PHOTOS,
+            len(taken.names),
+            copies[0].message,
         )
     if n_others == 0:
         return say("a coarse model needs at least {} photos, got {}", LEAST_PHOTOS, len(taken.names))
@@ -357,7 +366,8 @@ class _Provisional:
 
 
 def _taken(folder: Path, photos: Sequence[PhotoMetadata], stated: Stated) -> _Taken:
-    chosen, findings = of_camera(photos, stated.camera)
+    of_kind, findings = of_camera(photos, stated.camera)
+    chosen, copies = _once(of_kind)
     names = tuple(_name(photo, folder) for photo in chosen)
     lenses = tuple(_lens(photo, stated.lens) for photo in chosen)
     groups = tuple(
@@ -369,7 +379,7 @@ def _taken(folder: Path, photos: Sequence[PhotoMetadata], stated: Stated) -> _Ta
     if n_unknown:
         text = say("{} of {} photos do not say their focal length: it is found with the model", n_unknown, len(names))
         findings += (Finding(Severity.NOTE, "lens-found", text, "", float(n_unknown), None, "photos"),)
-    return _Taken(names, tuple(chosen), lenses, groups, measured, origin, (*findings, *lately))
+    return _Taken(names, chosen, lenses, groups, measured, origin, (*copies, *findings, *lately))
 
 
 def _whole(photos: Sequence[PhotoMetadata], monitor: Monitor) -> tuple[tuple[PhotoMetadata, ...], tuple[Finding, ...]]:
@@ -389,6 +399,45 @@ def _whole(photos: Sequence[PhotoMetadata], monitor: Monitor) -> tuple[tuple[Pho
             found.append(result)
     kept = tuple(photo for photo, result in zip(photos, found, strict=True) if result is None)
     return kept, tuple(result for result in found if result is not None)
+
+
+COPIED = "photos-copied"
+
+
+def _once(photos: Sequence[PhotoMetadata]) -> tuple[tuple[PhotoMetadata, ...], tuple[Finding, ...]]:
+    """Photos without copies of the same file under other names, which show nothing new."""
+    first: dict[tuple[int, str], PhotoMetadata] = {}
+    copies = []
+    for photo in photos:
+        content = photo.path.stat().st_size, _start_of(photo.path)
+        if first.setdefault(content, photo) is not photo:
+            copies.append(photo)
+    if not copies:
+        return tuple(photos), ()
+    text = say(
+        "{} of {} photos are copies of others and are left out, the first {}",
+        len(copies),
+        len(photos),
+        copies[0].path.name,
+    )
+    return tuple(first.values()), (Finding(Severity.WARNING, COPIED, text, "", float(len(copies)), 0.0, ""),)
+
+
+MOST_DAYS = 2.0
+"""Between the first photo and the last, from which on it is told: other light, leaves, cars and scaffolds."""
+
+
+def _days_apart(photos: Sequence[PhotoMetadata]) -> tuple[Finding, ...]:
+    times = [photo.taken_at.timestamp() for photo in photos if photo.taken_at is not None]
+    days = (max(times) - min(times)) / 86400.0 if times else 0.0
+    if days < MOST_DAYS:
+        return ()
+    text = say(
+        "the photos were taken over {:.0f} days: what has changed since, light, plants and vehicles, does not fit "
+        "together; if photos are left out, put each flight into a folder of its own",
+        days,
+    )
+    return (Finding(Severity.WARNING, "photos-days-apart", text, "", days, MOST_DAYS, "days"),)
 
 
 def _name(photo: PhotoMetadata, folder: Path) -> str:
@@ -529,6 +578,7 @@ def _run(
         max_features=parameters.max_features,
         least_contrast=parameters.least_contrast,
         seed=parameters.seed,
+        find_lens=parameters.find_lens,
     )
     return ColmapRun(colmap, kept, folder, started, settings, monitor)
 
@@ -552,7 +602,7 @@ def _pairs(run: ColmapRun, taken: _Taken, parameters: CoarseParameters, monitor:
 
 def _mapped(run: ColmapRun, fixed: set[int], pairs: Sequence[Pair], colmap: Any) -> Any | None:
     """The free model: made, or as it was kept of the same pairs; None where matches give none."""
-    digest = hashlib.sha256(json.dumps(sorted(pairs)).encode()).hexdigest()
+    digest = hashlib.sha256(json.dumps([sorted(pairs), sorted(fixed)]).encode()).hexdigest()
     path, folder = run.own / MAPPED, run.own / "mapped"
     if path.is_file() and read_json(path) == {"sha256": digest}:
         return colmap.Reconstruction(folder)
@@ -592,16 +642,14 @@ def _in_place(
     model = as_model(free, scratch / "placed")
     placed, findings = _place(model, taken, stated, parameters)
     lately: tuple[Finding, ...] = ()
-    if stated.lens is None and placed.scale_from == "positions" and len(model.images) >= LEAST_FOR_LENS:
-        own = _measured_of(model, taken)
-        if fixed and contradicts(placed, own):
-            other = run.with_found_lenses(free, fixed, scratch / "lenses")
-            other_model = as_model(other, scratch / "relensed")
-            again, found_again = _place(other_model, taken, stated, parameters)
-            if in_sigmas(again, own) < BETTER_LENS * in_sigmas(placed, own):
-                lately = about_lens(placed, again)
-                free, fixed, model, placed, findings = other, set(), other_model, again, found_again
-        lately = lately or about_positions(placed, own)
+    if placed.scale_from == "positions" and n_used >= LEAST_PHOTOS:
+        if fixed:
+            free, decision = run.choose_lenses(free, fixed, scratch / "lenses")
+            lately = (about_lens(decision),)
+            if decision.on:
+                fixed, model = set(), as_model(free, scratch / "relensed")
+                placed, findings = _place(model, taken, stated, parameters)
+        lately += about_positions(placed, _measured_of(model, taken))
     model = in_enu(model, placed.enu_from_model)
     if placed.scale_from == "positions":
         used = {image.name for image, is_used in zip(model.images.values(), placed.is_used, strict=True) if is_used}
@@ -612,10 +660,6 @@ def _in_place(
             placed, findings = _place(model, taken, stated, parameters)
             model = in_enu(model, placed.enu_from_model)
     return placed, model, float(free.compute_mean_reprojection_error()), (*findings, *lately)
-
-
-LEAST_FOR_LENS, BETTER_LENS = 10, 0.5
-"""Photos from which on a lens is found against what they state, and what is left of their distance from the model."""
 
 
 def _measured_of(model: ColmapModel, taken: _Taken) -> list[Measured]:

@@ -63,6 +63,12 @@ class CoarseRequest:
         choices=(Choice("auto"), Choice("on"), Choice("off")),
         option="--dense",
     )
+    find_lens: EffectSetting = parameter(
+        "auto",
+        "find the lens from the photos; auto: a calibration stays unless they contradict it",
+        choices=(Choice("auto"), Choice("on"), Choice("off")),
+        option="--find-lens",
+    )
 
     def __post_init__(self) -> None:
         check(self)

@@ -529,17 +529,6 @@ def _median_off_m(placed: Placed) -> float:
     return float(np.nanmedian(np.linalg.norm(placed.residuals_m, axis=1)))
 
 
-def about_lens(stated: Placed, found: Placed) -> tuple[Finding, ...]:
-    """What is said of a model whose lens was found again, as the stated one contradicted its photos' positions."""
-    text = say(
-        "the lens that the photos state does not fit their positions, which the model then misses by {:.2f} m: it was "
-        "found with the model, which meets them to {:.2f} m",
-        _median_off_m(stated),
-        _median_off_m(found),
-    )
-    return (Finding(Severity.NOTE, "lens-contradicts", text, "", _median_off_m(stated), _median_off_m(found), "m"),)
-
-
 def about_positions(placed: Placed, measured: Sequence[Measured]) -> tuple[Finding, ...]:
     """What is said where positions contradict the model; arguments as of `in_sigmas`."""
     if not contradicts(placed, measured):

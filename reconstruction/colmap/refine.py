@@ -31,6 +31,7 @@ from reconstruction.colmap.georeference import (
     Georeference,
     Similarity,
     angle_information,
+    are_on_a_line,
     georeference,
     in_enu,
     posed_photos,
@@ -42,6 +43,7 @@ from reconstruction.colmap.pycolmap_run import (
     ColmapRun,
     RefineParameters,
     StartPhoto,
+    about_lens,
     as_model,
     do_not_fit,
     load_colmap,
@@ -369,7 +371,7 @@ def refine_poses(
     """Refine the poses and lenses of photos.
 
     Photos with the same intrinsics share a camera, whose focal length and distortion are refined; a distortion with a
-    third radial term is a calibration, and stays.
+    third radial term is a calibration, and stays unless the photos say otherwise (`FoundLens`).
 
     Parameters
     ----------
@@ -402,6 +404,10 @@ def refine_poses(
         free = _with_others(work, free, photos, fixed_cameras, Path(name))
         if free is None:
             raise do_not_fit(len(photos))
+        lens: tuple[Finding, ...] = ()
+        if fixed_cameras and not are_on_a_line(np.array([photo.pose.position_enu_m for photo in photos])):
+            free, decision = work.choose_lenses(free, fixed_cameras, Path(name) / "lenses")
+            lens = (about_lens(decision),)
         model = as_model(free, Path(name) / "adjusted")
         error_px = float(free.compute_mean_reprojection_error())
     # The adjustment knows positions alone; the last word on where the model lies is that of positions and angles.
@@ -420,7 +426,7 @@ def refine_poses(
         if photo.name in found
     )
     left_out = tuple(photo.name for photo in photos if photo.name not in found)
-    findings = (*laid.findings, *unsure, *_left_out(left_out, len(photos)))
+    findings = (*laid.findings, *lens, *unsure, *_left_out(left_out, len(photos)))
     return Refinement(refined, model, laid, error_px, left_out, findings)
 
 

@@ -82,6 +82,7 @@ def test_without_pycolmap_it_is_said_what_to_install_and_nothing_is_written(
     [
         (("--refined", "x"), "--refined: belongs to --refine"),
         (("--refine-size", 800), "--refine-size: belongs to --refine"),
+        (("--find-lens", "off"), "--find-lens: belongs to --refine"),
         (("--refine", "--refine-size", 0), "--refine-size: expected at least 1, got 0"),
     ],
 )

@@ -88,7 +88,7 @@ def coarse_files(request: CoarseRequest, monitor: Monitor = QUIET) -> CoarseFile
         The photos do not fit together.
     """
     check_folder_name(request.out)
-    parameters = CoarseParameters(max_image_size_px=request.size_px, seed=request.seed)
+    parameters = CoarseParameters(max_image_size_px=request.size_px, seed=request.seed, find_lens=request.find_lens)
     read = read_photos(request.photos, monitor)
     names = {photo.path.relative_to(request.photos).as_posix(): photo for photo in read.photos}
     sizes = {name: (photo.width_px, photo.height_px) for name, photo in names.items()}

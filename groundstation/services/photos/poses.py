@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.effects import EffectSetting
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
@@ -62,10 +63,13 @@ class RefineRequest:
         Where refined poses are kept; None for beside the photos. What is there is taken if it is of the same photos.
     max_image_size_px
         What photos are reduced to; None for the usual, and for whatever was kept.
+    find_lens
+        Whether lenses are found against what the photos state; None for the usual, and for whatever was kept.
     """
 
     folder: Path | None = None
     max_image_size_px: int | None = None
+    find_lens: EffectSetting | None = None
 
     def __post_init__(self) -> None:
         if self.max_image_size_px is not None and self.max_image_size_px < 1:
@@ -306,6 +310,8 @@ def refined_poses(
     parameters = RefineParameters()
     if request.max_image_size_px is not None:
         parameters = replace(parameters, max_image_size_px=request.max_image_size_px)
+    if request.find_lens is not None:
+        parameters = replace(parameters, find_lens=request.find_lens)
     refinement = refine_poses(photos, folder, parameters, monitor)
     write_refined(where, refinement, photos, parameters)
     return _judged(photos, read_refined(where, photos), where, was_kept=False)
@@ -344,16 +350,16 @@ def refined_summary(outcome: RefinedOutcome) -> dict[str, Any]:
 
 
 def _stored_refinement(where: Path, photos: Sequence[PosedPhoto], request: RefineRequest) -> StoredRefinement | None:
-    """What was computed before of the same photos, and in the size asked for."""
+    """What was computed before of the same photos, as it is asked for."""
     if not is_refined_folder(where):
         return None
     try:
         kept = read_refined(where, photos)
     except InputError as error:
         raise InputError(say("{}; remove the folder {} to have the poses refined again", error, where)) from error
-    size = request.max_image_size_px
     is_same = kept.photos_sha256 == fingerprint(photos)
-    return kept if is_same and size in (None, kept.parameters.max_image_size_px) else None
+    is_same &= request.max_image_size_px in (None, kept.parameters.max_image_size_px)
+    return kept if is_same and request.find_lens in (None, kept.parameters.find_lens) else None
 
 
 def _judged(photos: Sequence[PosedPhoto], kept: StoredRefinement, where: Path, *, was_kept: bool) -> ChosenPoses:

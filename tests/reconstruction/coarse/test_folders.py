@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from datetime import datetime, timedelta
+from pathlib import Path
+
 import pytest
 
 from groundstation.services.photos.coarse import coarse_files
 from planning.base.errors import InputError
+from planning.photos.record import PhotoMetadata
+from reconstruction.coarse.build import _days_apart
 from reconstruction.coarse.parameters import CoarseRequest
 from tests.planning.photos.photo_writer import exif_part, gps_tags, jpeg, packet, save
 
@@ -42,3 +47,33 @@ def test_damaged_photos_are_left_out_and_told_before_they_are_too_few(tmp_path):
         InputError, match=r"needs at least 3 photos, and 2 of 4 are whole; the first other: .*0\.jpg: a p"
     ):
         coarse_files(CoarseRequest(tmp_path / "card", tmp_path / "out"))
+
+
+def test_copies_of_one_photo_count_once(tmp_path):
+    for number in range(5):
+        write(tmp_path / "card", f"{number}.jpg")
+    with pytest.raises(
+        InputError, match=r"at least 3 photos taken from different places, got 1; 4 of 5 photos are copies .* 1\.jpg"
+    ):
+        coarse_files(CoarseRequest(tmp_path / "card", tmp_path / "out"))
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("DJI_0001.MP4", "but videos, the first DJI_0001.MP4; fly again"),
+        ("shot.PNG", "but 1 of other kinds, the first shot.PNG"),
+    ],
+)
+def test_files_that_are_no_photos_are_named(tmp_path, name, said):
+    (tmp_path / "card" / "DCIM").mkdir(parents=True)
+    (tmp_path / "card" / "DCIM" / name).write_bytes(b"0")
+    with pytest.raises(InputError, match=said):
+        coarse_files(CoarseRequest(tmp_path / "card", tmp_path / "out"))
+
+
+@pytest.mark.parametrize(("days", "is_told"), [(0, False), (1, False), (9, True)])
+def test_photos_of_flights_days_apart_are_told(days, is_told):
+    begun = datetime(2026, 5, 1, 10)
+    photos = [PhotoMetadata(Path("a.jpg"), 4, 3, taken_at=begun + timedelta(days=n)) for n in (0, 0, days)]
+    assert bool(_days_apart(photos)) is is_told

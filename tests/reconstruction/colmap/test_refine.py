@@ -10,13 +10,14 @@ import cv2
 import numpy as np
 import pytest
 
+from planning.base.effects import decide
 from planning.base.errors import InputError, OperationCancelled, ReconstructionError
 from planning.base.progress import QUIET
 from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.colmap import refine
 from reconstruction.colmap.folder import read_model, write_model
 from reconstruction.colmap.georeference import Similarity, angle_between_deg, georeference, posed_photos
-from reconstruction.colmap.pycolmap_run import ColmapRun, StartPhoto, keep_largest
+from reconstruction.colmap.pycolmap_run import ColmapRun, Fit, FoundLens, StartPhoto, keep_largest
 from reconstruction.colmap.record import camera_of
 from reconstruction.colmap.refine import RefineParameters, _covariances, refine_poses
 from tests.reconstruction.colmap.models import covariance, model, photos, turned
@@ -104,6 +105,86 @@ def test_positions_to_centimetres_find_a_lens_that_was_stated_wrongly(tmp_path, 
     assert np.allclose((fx, fy), 1986.0, atol=6.0) if tilt_deg else (fx, fy) == pytest.approx((1964.5, 1964.5))
     assert np.allclose((cx, cy), (788.0, 660.0), atol=3.0)
     assert np.allclose(as_stated.camera(1).params[:4], (1973.0, 1956.0, 781.0, 630.0))
+
+
+CALIBRATED = Intrinsics(1600, 1300, 1186.0, 1186.0, 800.0, 650.0, (-0.11, 0.05, 0.001, 0.0, -0.01))
+
+
+def around(tmp_path, colmap, stated, find_lens="auto", n=12):
+    """A model of a round flight with a calibrated lens, adjusted as it is stated, and its run."""
+    posed = []
+    for number in range(n):
+        angle = 2.0 * np.pi * number / n
+        place = np.array([19.0 * np.cos(angle), 19.0 * np.sin(angle), 4.0 + 5.0 * (number % 3)])
+        heading = np.degrees(np.arctan2(-place[0], -place[1]))
+        pose = Pose.looking(place, heading, -10.0 - 5.0 * (number % 3), 0.0, covariance(SIGMA_M))
+        posed.append(PosedPhoto(f"{number:02d}.jpg", Path(f"{number:02d}.jpg"), CALIBRATED, pose))
+    seen = model(posed, 600, sigma_px=0.5, low=(-7.0, -5.0, 0.0), high=(7.0, 5.0, 9.0))
+    write_model(tmp_path, replace(seen, cameras={1: camera_of(stated, 1)}), "txt")
+    rng = np.random.default_rng(0)
+    places = [
+        StartPhoto(
+            photo.name,
+            "drone",
+            stated,
+            photo.pose.position_enu_m + rng.normal(0.0, SIGMA_M, 3),
+            SIGMA_M**2 * np.eye(3),
+        )
+        for photo in posed
+    ]
+    run = ColmapRun(colmap, tmp_path, tmp_path, places, RefineParameters(find_lens=find_lens), QUIET)
+    start_model = colmap.Reconstruction(tmp_path)
+    run.adjust(start_model, {1})
+    return run, start_model
+
+
+def longer(share):
+    return replace(CALIBRATED, fx_px=(1.0 + share) * 1186.0, fy_px=(1.0 + share) * 1186.0)
+
+
+@pytest.mark.parametrize(
+    ("share", "setting", "is_found"),
+    [(0.0, "auto", False), (0.015, "auto", True), (-0.015, "auto", True), (0.015, "off", False), (0.0, "on", True)],
+)
+def test_a_calibration_stays_unless_the_photos_contradict_it(tmp_path, share, setting, is_found):
+    colmap = pytest.importorskip("pycolmap", reason="pycolmap is not installed (pip install .[colmap])")
+    stated = longer(share)
+    run, start_model = around(tmp_path, colmap, stated, setting)
+    chosen, decision = run.choose_lenses(start_model, {1}, tmp_path / "lenses")
+    assert decision.on is is_found
+    assert decision.decided_by == ("scene" if setting == "auto" else "user")
+    focal_px = chosen.camera(1).params[0]
+    assert focal_px == pytest.approx(1186.0, abs=1.5) if is_found else focal_px == stated.fx_px
+    if setting == "auto":
+        stated_fit, found_fit = (
+            run.fit_of(start_model),
+            run.fit_of(run.with_found_lenses(start_model, {1}, tmp_path / "again")),
+        )
+        assert (stated_fit.error_px > 1.1 * found_fit.error_px) is is_found
+        assert f"{stated_fit.error_px:.2f} px" in str(decision)
+
+
+def test_too_few_photos_tell_no_lens(tmp_path):
+    colmap = pytest.importorskip("pycolmap", reason="pycolmap is not installed (pip install .[colmap])")
+    run, start_model = around(tmp_path, colmap, longer(0.015), n=8)
+    chosen, decision = run.choose_lenses(start_model, {1}, tmp_path / "lenses")
+    assert chosen is start_model
+    assert not decision.on
+
+
+@pytest.mark.parametrize(
+    ("stated", "found", "is_on"),
+    [
+        (Fit(0.56, 2.0), Fit(0.56, 1.9), False),  # positions alone are met a little better by any lens that may bend
+        (Fit(0.56, 30.0), Fit(0.56, 5.0), True),
+        (Fit(0.56, 30.0), Fit(0.56, 20.0), False),
+        (Fit(0.73, 2.0), Fit(0.56, 2.0), True),
+        (Fit(0.56, 2.0), Fit(0.57, 2.0), False),
+        (Fit(0.0, 0.0), Fit(0.0, 0.0), False),
+    ],
+)
+def test_a_lens_is_found_where_image_points_fit_better_or_positions_contradict_the_stated_one(stated, found, is_on):
+    assert decide(FoundLens(), (stated, found)).on is is_on
 
 
 @pytest.mark.slow
