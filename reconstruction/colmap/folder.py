@@ -284,6 +284,13 @@ def read_images_text(content: str, place: str) -> list[ColmapImage]:
             if 3 * len(point_ids) != len(parts):
                 raise ValueError("not three numbers each")
         except (ValueError, OverflowError) as error:
+            if len(parts) > 9 and parts[0].isdigit() and parts[8].isdigit() and not parts[9].isdigit():
+                raise InputError.say(
+                    "expected the observations of '{}', or an empty line, found the next image; every image has two "
+                    "lines",
+                    name,
+                    place=say("{}, line {}", place, number),
+                ) from error
             raise _bad_line(place, number, "X Y POINT3D_ID ...", line) from error
         images.append(ColmapImage(image_id, (w, x, y, z), (t[0], t[1], t[2]), camera_id, name, points_px, point_ids))
     return images

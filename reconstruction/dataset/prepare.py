@@ -268,6 +268,9 @@ def _photo(
         stored = read_input_file(photo.path, PICTURE_FILE)
         check_whole(stored, str(photo.path))
         content = decoded(stored, cv2.IMREAD_COLOR | cv2.IMREAD_IGNORE_ORIENTATION, str(photo.path))
+        is_turned = content.shape[:2] == (lens.width_px, lens.height_px) != (lens.height_px, lens.width_px)
+        if is_turned:  # the camera is of the picture as programs show it, such as those that rotate before they match
+            content = decoded(stored, cv2.IMREAD_COLOR, str(photo.path))
     except InputError:
         text = say("the picture is damaged, or cannot be decoded; it was left out")
         return Finding(Severity.WARNING, "photo-unreadable", text, photo.name)
@@ -277,11 +280,13 @@ def _photo(
             "the picture has {} pixels, its camera {} x {}; it was left out", found, lens.width_px, lens.height_px
         )
         return Finding(Severity.WARNING, "photo-size", text, photo.name)
-    straight = replace(photo, intrinsics=lens.straight())
+    straight, is_changed = replace(photo, intrinsics=lens.straight()), is_turned
     target = folder / "images" / photo.name
     target.parent.mkdir(parents=True, exist_ok=True)
     if straighten and not lens.is_straight:
         straight, content = straightened(photo, content)
+        is_changed = True
+    if is_changed:
         _write(target, content)
     else:
         _same_file(photo.path, target)

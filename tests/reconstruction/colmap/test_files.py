@@ -191,6 +191,11 @@ def test_damaged_bytes_never_do_more_than_be_refused(data):
         ("images", "1 1 0 0 0 0 0 0 7 a.jpg\n1 2", "expected the columns X Y POINT3D_ID"),
         (
             "images",
+            "1 1 0 0 0 0 0 0 7 a.jpg\n2 1 0 0 0 0 0 0 7 b.jpg",
+            "line 3: expected the observations",
+        ),
+        (
+            "images",
             "1 1 0 0 0 0 0 0 7 a.jpg\n1 2 99999999999999999999999",
             "expected the columns X Y POINT3D_ID",
         ),

@@ -236,6 +236,22 @@ def test_photos_marked_to_be_shown_turned_are_straightened_as_they_are_stored(tm
     np.testing.assert_array_equal(one, other)
 
 
+@pytest.mark.parametrize("lens", [LENS, BENT])
+def test_a_camera_of_the_turned_picture_gets_the_turned_picture(tmp_path: Path, lens: Intrinsics) -> None:
+    upright = replace(lens, width_px=150, height_px=200, cx_px=75.0, cy_px=100.0)
+    photos = photos_in(tmp_path / "in", upright, 1)
+    lying = np.rot90(cv2.imread(str(photos[0].path)))  # EXIF's 6 turns it back
+    content = cv2.imencode(".jpg", np.ascontiguousarray(lying), [cv2.IMWRITE_JPEG_QUALITY, 100])[1].tobytes()
+    photos[0].path.write_bytes(content[:2] + segment(exif_part(image={0x0112: 6})) + content[2:])
+    prepared = prepare(photos, site_model(), tmp_path / "out", QUICK)
+    assert prepared.findings == ()
+    found = read_photo_set(tmp_path / "out")
+    picture = found.picture(found.photos[0])
+    assert picture.shape == (200, 150, 3)
+    middle = picture[100, 75]  # red is 40 * the photo's number, green and blue are y and x
+    assert np.abs(middle.astype(int) - (0, 100, 75)).max() < 12
+
+
 @pytest.mark.slow
 def test_a_cancelled_run_leaves_nothing(tmp_path: Path) -> None:
     class Cancelling(Monitor):
