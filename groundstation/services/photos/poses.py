@@ -216,16 +216,14 @@ def _of_model(model: ColmapModel, frame: Frame | None, posed: PhotoSet, folder: 
     reference = georeference(model, posed.photos)
     times = {photo.name: photo.taken_at for photo in posed.photos}
     better = posed_photos(model, reference.enu_from_model, folder, times)
-    known = (photo for photo in better if photo.name in times or _says_nothing(photo, posed))
+    wanted = times.keys() | {photo.name for photo in posed.unposed}
+    # A model may hold pictures that say nothing of themselves beside photos that do.
+    known = (
+        photo for photo in better if photo.name in wanted or (is_other_picture(photo.path) and photo.path.is_file())
+    )
     photos = tuple(replace(photo, pose=replace(photo.pose, covariance=reference.usual_covariance)) for photo in known)
     points = reference.enu_from_model(model.points.xyz) if len(model.points) else None
     return ChosenPoses(photos, reference.findings, points_enu_m=points)
-
-
-def _says_nothing(photo: PosedPhoto, posed: PhotoSet) -> bool:
-    """Whether a model's photo is in the folder, but has no pose of its own."""
-    is_unposed = any(each.name == photo.name for each in posed.unposed)
-    return is_unposed or (is_other_picture(photo.path) and photo.path.is_file())
 
 
 def _fitted(chosen: ChosenPoses, sizes_px: Mapping[str, tuple[int, int]]) -> ChosenPoses:
