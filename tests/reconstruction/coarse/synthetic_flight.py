@@ -64,12 +64,7 @@ def write_pavilion(folder: Path) -> tuple[Path, Path]:
 
 
 def fly_around(
-    run: Callable[..., object],
-    folder: Path,
-    n_photos: int,
-    width_px: int,
-    n_taken: int | None = None,
-    camera: str | None = None,
+    run: Callable[..., object], folder: Path, n_photos: int, width_px: int, n_taken: int | None = None
 ) -> Flight:
     """Photos in rings around the pavilion, with the errors of receivers and gimbals in their metadata.
 
@@ -79,8 +74,6 @@ def fly_around(
         Runs a command of `app.py` with its arguments.
     n_taken
         Of the whole rings, those nearest to the corner between the glass walls; all without.
-    camera
-        TOML of shutter, lens and pose errors; the usual without.
     """
     site, look = write_pavilion(folder / "truth")
     plan = folder / "first.plan.json"
@@ -94,11 +87,8 @@ def fly_around(
     )
     write_plan(plan, replace(whole, viewpoints=views, sorties=sorties))
     rendered = folder / "first"
-    options: tuple[object, ...] = ("--effects", "position-error=on", "--effects", "gimbal-error=on")
-    if camera is not None:
-        (folder / "camera.toml").write_text(camera, "utf-8")
-        options += ("--camera", folder / "camera.toml")
-    run("scene", "render", site, "--plan", plan, "--width", width_px, "--look", look, *options, "-o", rendered)
+    errors = ("--effects", "position-error=on", "--effects", "gimbal-error=on")
+    run("scene", "render", site, "--plan", plan, "--width", width_px, "--look", look, *errors, "-o", rendered)
     return Flight(site, look, rendered)
 
 
