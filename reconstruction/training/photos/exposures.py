@@ -306,6 +306,10 @@ def _explained(seen: Array, gains: Array) -> float:
     Frames that are a pixel wide, and points beside where poses say, look brighter or darker in whole photos, too, but
     not by one factor.
     """
+    # Photos that tell too little were left out since: what only they show is shown by none of these.
+    seen = seen[:, (~np.isnan(seen[..., 0])).sum(axis=0) >= 2]
+    if not seen.size:
+        return 0.0
     before, after = (
         float(np.nanmedian(np.abs(light - np.nanmedian(light, axis=0)))) for light in (seen, seen - gains[:, None])
     )

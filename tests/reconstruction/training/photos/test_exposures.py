@@ -321,3 +321,12 @@ def test_training_begins_with_what_points_tell_and_keeps_it(tmp_path):
     assert torch.equal(back.exposures.log_gains, own.exposures.log_gains)
     off = train_model(folder, replace(config, own_exposures="off"))
     assert (off.exposures.log_gains == 0.0).all()
+
+
+@pytest.mark.parametrize("n_seen", [40, 0])
+def test_points_that_no_photo_shows_any_more_say_nothing_of_what_gains_explain(n_seen):
+    light = np.random.default_rng(0).normal(size=(1, 60, 3))
+    gains = np.array([0.3, 0.0, -0.3])[:, None] + np.zeros((3, 3))
+    seen = light + gains[:, None]
+    seen[:, n_seen:] = np.nan
+    assert exposures._explained(seen, gains) == pytest.approx(1.0 if n_seen else 0.0)
