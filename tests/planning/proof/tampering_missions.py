@@ -19,10 +19,13 @@ def _missions(files: Files, *endings: str) -> list[str]:
 
 
 def _rewrite_kmz(content: bytes, change: Callable[[str, str], str]) -> bytes:
+    """Members changed in an archive that is as before otherwise: it is their texts that are to be looked at."""
     source, target = zipfile.ZipFile(io.BytesIO(content)), io.BytesIO()
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name in source.namelist():
-            archive.writestr(name, change(name, source.read(name).decode()))
+        for old in source.infolist():
+            member = zipfile.ZipInfo(old.filename, old.date_time)
+            member.compress_type, member.create_system, member.external_attr = zipfile.ZIP_DEFLATED, 3, 0o644 << 16
+            archive.writestr(member, change(old.filename, source.read(old).decode()))
     return target.getvalue()
 
 
