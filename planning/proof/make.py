@@ -270,7 +270,7 @@ def _best_views(case: Case) -> tuple[NDArray[np.int64], ...]:
     panes, n, rings = case.panes, case.n, case.rings
     c, normal, t, b = (np.array([getattr(pane, name) for pane in panes]) for name in ("c", "n", "t", "b"))
     corners = np.array([pane.corners for pane in panes])
-    sines, cosines = np.array(case.angles).T
+    sines, cosines = np.array([case.angle(k) for k in range(4 * rings + 1)]).T
     found = [(np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int64))]
     for number, (_, place, heading_deg, pitch_deg) in enumerate(case.views):
         heading, pitch = math.radians(heading_deg), math.radians(pitch_deg)
@@ -436,10 +436,10 @@ def _panel(case: Case, element: int) -> Panel:
     """A section as the search takes it."""
     pane, ring, sector = case._section(element)
     n, t, b = (np.array(axis) for axis in (pane.n, pane.t, pane.b))
-    (s0, c0), (s1, c1) = case.angles[sector : sector + 2]
+    (s0, c0), (s1, c1) = case.angle(sector), case.angle(sector + 1)
     axes, cosines = [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]], list(case.steepest)
     if ring > 0:
-        axes, cosines = [*axes, n.tolist()], [*cosines, case.angles[ring][1]]
+        axes, cosines = [*axes, n.tolist()], [*cosines, case.angle(ring)[1]]
     sides = np.array([n, c0 * b - s0 * t, s1 * t - c1 * b])
-    outer = np.array(case.angles[ring + 1])
+    outer = np.array(case.angle(ring + 1))
     return Panel(np.array(pane.c), np.array([n, t, b]), sides, outer, np.array(axes), np.array(cosines))

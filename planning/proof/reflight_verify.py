@@ -24,7 +24,7 @@ import sys
 import zlib
 from functools import partial
 from itertools import pairwise, product
-from math import ceil, cos, floor, radians, sin, sqrt
+from math import ceil, cos, floor, radians, remainder, sin, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -193,8 +193,9 @@ class Pane:
         demand(is_wide and max(sizes) <= 1e3, "a panel is no pane: too thin, small or large")
         self.n = scaled(area, 1.0 / length(area))
         level = sqrt(self.n[0] * self.n[0] + self.n[1] * self.n[1])
-        demand(level >= 1.001e-6 or level <= 1e-12, "a panel is neither level nor tilted by 1e-6")
-        self.t = (-self.n[1] / level, self.n[0] / level, 0.0) if level > 1e-9 else (1.0, 0.0, 0.0)
+        is_level = level <= 1e-12
+        demand(is_level or level >= 1.001e-6, "a panel is neither level nor tilted by 1e-6")
+        self.t = (1.0, 0.0, 0.0) if is_level else (-self.n[1] / level, self.n[0] / level, 0.0)
         self.b = cross(self.n, self.t)
         self.target = plus(self.c, self.n, SIGHT_OFFSET_M)
 
@@ -235,8 +236,8 @@ class Terrain:
                 above.append(a[2] + (b[2] - a[2]) * way - (south + (north - south) * v))
             bend = 2.0 * (above[0] + above[2]) - 4.0 * above[1]
             slope = above[2] - above[0] - bend
-            lowest = above[0] - slope * slope / (4.0 * bend) if 0.0 < -slope < 2.0 * bend else above[0]
-            least = min(least, lowest, above[0], above[2])
+            lowest = above[0] - slope * slope / (4.0 * bend) if 0.0 < -slope < 2.0 * bend else least
+            least = min(least, lowest, *above)
         return least
 
 def origin_of(record: Any) -> Vec:
@@ -246,7 +247,7 @@ def origin_of(record: Any) -> Vec:
 
 def between(a_deg: float, b_deg: float) -> float:
     """Angle between two headings, up to 180 degrees."""
-    return abs(abs(a_deg - b_deg) - 360.0 * floor(abs(a_deg - b_deg) / 360.0 + 0.5))
+    return abs(remainder(a_deg - b_deg, 360.0))
 
 def rest_to_rest(size: float, speed: float, a: float, jerk: float) -> float:
     """At most so long takes a leg from rest to rest: up to the highest speed that has room for its ramps, and down."""
@@ -270,10 +271,12 @@ class Case:
             heading, pitch = [number(view, name, -360.0, 360.0) for name in ("heading_deg", "gimbal_pitch_deg")]
             self.views.append((get(view, "id", str), vector(view.get("position_enu_m"), "position"), heading, pitch))
         self.by_id, self.sorties = {view[0]: view for view in self.views}, get(self.plan, "sorties", list)
+        self.flown = [get(sortie, "viewpoint_ids", list) for sortie in self.sorties]
+        demand(all([type(name) is str for names in self.flown for name in names]), "'viewpoint_ids' holds no names")
         self.paths = [[vector(p, "path_enu_m") for p in get(sortie, "path_enu_m", list)] for sortie in self.sorties]
         self.legs = [(s, k, a, b) for s, path in enumerate(self.paths) for k, (a, b) in enumerate(pairwise(path))]
-        self.directions = [vector(each, "directions", 3, 1.0) for each in get(self.proof, "directions", list)]
-        demand(all([dot(n, n) <= 1.0 - 1e-14 for n in self.directions]), "a direction of the proof is too long")
+        self.directions = [vector(each, "directions") for each in get(self.proof, "directions", list)]
+        demand(all([dot(n, n) <= 1.0 for n in self.directions]), "a direction of the proof is too long")
 
     def _read_site(self, folder: Path) -> None:
         facades = [known(each, "a facade") for each in get(known(self.site, "the site"), "facades", list)]
@@ -289,8 +292,8 @@ class Case:
                 (x, y, below), (u, v, above) = [vector(corner, "box") for corner in box]
                 triangles += prism([(x, y), (u, y), (u, v), (x, v)], below, above)
                 continue
-            is_plain = re.fullmatch(r"[^/\\:\0-\x1f]+(/[^/\\:\0-\x1f]+)*", name) is not None and ".." not in name
-            demand(is_plain, "a mesh has a name that is no file's")
+            is_plain = re.fullmatch(r"(?![.]|[^\n]*/[.])[^/\\:\0-\x1f]+(/[^/\\:\0-\x1f]+)*", name)
+            demand(is_plain is not None, "a mesh has a name that is no file's")
             self.meshes[name] = (folder / name).read_bytes()
             triangles += read_ply(self.meshes[name])
         self.air, walls = known(get(self.site, "airspace", dict), "the airspace"), list[Triangle]()
@@ -322,11 +325,10 @@ class Case:
         self.far_m = number(limits, "max_distance_m", 0.01, 1e5, default=1e6)
         self.occlusion, self.whole = get(limits, "occlusion", str), get(limits, "whole_panel", bool, False)
         demand(self.occlusion in ("on", "off"), "the plan does not say whether occlusion counts")
-        step = number(limits, "section_step_deg", 1.0, 90.0)
+        step = number(limits, "section_step_deg", 1.0)
         self.rings = floor(90.0 / step + 0.5)
-        demand(abs(90.0 / step - self.rings) < 1e-12, "section_step_deg is no divisor of 90")
+        demand(abs(90.0 / step - self.rings) < R, "section_step_deg is no divisor of 90")
         self.n = 4 * self.rings * self.rings
-        self.angles = [sincos(90.0 / self.rings * k) for k in range(4 * self.rings + 1)]
         focal_mm = number(camera, "focal_length_mm", 0.01)
         self.half = [number(camera, f"sensor_{side}_mm", 0.01) / (2.0 * focal_mm) for side in ("width", "height")]
         demand(max(self.half) <= 100.0, "the camera has no field of view")
@@ -337,7 +339,7 @@ class Case:
     def _steepest(self, pitch_deg: float) -> float:
         """Sine of the steepest elevation upwards that comes into the picture, at least 0; 2 where nothing limits it."""
         (s, c), h = sincos(pitch_deg), self.half[1]
-        is_limited = -90.0 <= pitch_deg <= 90.0 and c - h * s > R
+        is_limited = pitch_deg >= -90.0 and c - h * s > R
         return max(0.0, (s + h * c) / sqrt(1.0 + h * h) + R) if is_limited else 2.0
 
     def _named(self, numbers: list[Any]) -> list[Vec]:
@@ -345,7 +347,7 @@ class Case:
         return [self.directions[place_in(each, len(self.directions), "the proof")] for each in numbers]
 
     def files(self) -> str:
-        meshes = {each["name"]: each["sha256"] for each in self.proof["meshes"]}
+        meshes = {each["name"]: each["sha256"] for each in get(self.proof, "meshes", list)}
         of_site, of_plan = [self.proof[name]["sha256"] for name in ("site", "plan")]
         named = [("the site", self.contents[0], of_site), ("the plan", self.contents[1], of_plan)]
         for what, content, sha256 in named + [(f"the mesh {k}", v, meshes.get(k)) for k, v in self.meshes.items()]:
@@ -359,7 +361,7 @@ class Case:
         demand(home is None or vector(home, "home") == self.home, "plan and site have another home", FALSE)
         is_there = origin is None or origin_of(self.plan) == origin_of(self.site)
         demand(is_there, "plan and site have another origin", FALSE)
-        flown = [name for sortie in self.sorties for name in get(sortie, "viewpoint_ids", list)]
+        flown = [name for names in self.flown for name in names]
         demand(len(flown) > 0, "there is no viewpoint")
         is_once = len(self.views) == len(flown) == len(self.by_id) and set(flown) == set(self.by_id)
         demand(is_once, "a viewpoint is not in one sortie", FALSE)
@@ -376,8 +378,8 @@ class Case:
     def photos_of(self, s: int) -> list[int]:
         """The vertex of each photo of a sortie, in order; photos at one place may share a vertex."""
         path, found = self.paths[s], [-1]
-        for name in get(self.sorties[s], "viewpoint_ids", list):
-            demand(type(name) is str and name in self.by_id, "an unknown viewpoint is flown", FALSE)
+        for name in self.flown[s]:
+            demand(name in self.by_id, "an unknown viewpoint is flown", FALSE)
             place, last = self.by_id[name][1], found[-1]
             ahead = [k for k in range(last + 1, len(path)) if is_same(path[k], place)][:1]
             shared = [last] if ahead != [last + 1] and last >= 0 and is_same(path[last], place) else ahead
@@ -408,8 +410,8 @@ class Case:
         """Home is outside: the polyline `outside` of the proof leads from it past all triangles, meeting none."""
         way = [vector(p, "outside") for p in get(self.proof, "outside", list)]
         starts = all([path[:1] == way[:1] == [self.home] for path in self.paths])
-        (low, high, _, _), end = solids.tree, way[-1] if way else self.home
-        far = any([end[i] <= low[i] - E or end[i] >= high[i] + E for i in range(3)]) or not solids.triangles
+        low, high, _, _ = solids.tree
+        far = any([way[-1][i] <= low[i] - E or way[-1][i] >= high[i] + E for i in range(3)])
         demand(starts and far, "no way is shown from home to outside of everything")
         for ends, by in zip(pairwise(way), self.proof["outside_directions"], strict=True):
             free = solids.clear(list(ends), self._named(by), 0.0)
@@ -426,8 +428,6 @@ class Case:
         return f"every leg keeps {self.near_m:g} m from every panel, mesh and obstacle, and lies outside of them"
 
     def no_fly_(self) -> str:
-        if not self.no_fly.triangles:
-            return "the site has no no-fly volumes"
         for s, k, a, b in self.legs:
             kept = self.no_fly.clear([a, b], self._named(self.proof["no_fly"][s][k]), 0.0)
             demand(kept, f"sortie {s + 1}, leg {k + 1} may enter a no-fly volume")
@@ -447,7 +447,7 @@ class Case:
             tops, by = (max(a[2], level), max(b[2], level)), self._named(self.proof["returns"][s][k])
             climb: list[Vec] = [a, b, (a[0], a[1], tops[0]), (b[0], b[1], tops[1])]
             home: list[Vec] = [(p[0], p[1], top) for p in (a, b, self.home) for top in tops]
-            for part in (climb, home, [self.home, (x, y, max(tops))]):
+            for part in (climb, home, [self.home, *[(x, y, top) for top in tops]]):
                 kept = self.solids.clear(part, by, kept_m) and self.no_fly.clear(part, by, 0.0)
                 why = f"the return from sortie {s + 1}, leg {k + 1} may come nearer than {kept_m:g} m to something"
                 demand(kept, why)
@@ -466,7 +466,7 @@ class Case:
         stop = max(settle + photo, number(craft, "min_photo_interval_s", 0.0, default=0.7))
         usable = number(craft, "endurance_s", 0.0) * (1.0 - reserve)
         for s, path in enumerate(self.paths):
-            views = [self.by_id[name] for name in get(self.sorties[s], "viewpoint_ids", list)]
+            views = [self.by_id[name] for name in self.flown[s]]
             total, least, (before, tilted) = ends, ends, (views[0][2] + 180.0, 0.0)
             for _, _, heading, pitch in views:  # where it turns on its way, that takes no longer
                 total = total + stop + max(between(heading, before) / yaw, abs(pitch - tilted) / tilt)
@@ -488,16 +488,18 @@ class Case:
         demand(at_once == 1.0 and not any(["start_s" in each for each in self.sorties]), "several aircraft fly at once")
         return "one aircraft flies at a time"
 
+    def angle(self, k: int) -> tuple[float, float]: return sincos(90.0 / self.rings * k)
+
     def _section(self, element: int) -> tuple[Pane, int, int]:
-        return self.panes[element // self.n], element % self.n // (4 * self.rings), element % self.n % (4 * self.rings)
+        return self.panes[element // self.n], *divmod(element % self.n, 4 * self.rings)
 
     def lies_in(self, place: Vec, element: int, sight: list[Any]) -> bool:
         """Whether a place surely lies in a section, near enough, with nothing between."""
         pane, ring, sector = self._section(element)
-        d, ((s0, c0), (s1, c1)) = sub(place, pane.c), self.angles[sector : sector + 2]
+        d, ((s0, c0), (s1, c1)) = sub(place, pane.c), (self.angle(sector), self.angle(sector + 1))
         away, along, u, v = length(d), dot(d, pane.n), dot(d, pane.t), dot(d, pane.b)
-        kept = [away <= self.far_m - E, along >= E, c0 * v - s0 * u >= E, s1 * u - c1 * v >= E]
-        kept += [ring == 0 or along <= self.angles[ring][1] * away - E, along >= self.angles[ring + 1][1] * away + E]
+        kept = [away <= self.far_m - E, c0 * v - s0 * u >= E, s1 * u - c1 * v >= E]
+        kept += [ring == 0 or along <= self.angle(ring)[1] * away - E, along >= self.angle(ring + 1)[1] * away + E]
         if not all(kept) or self.occlusion == "off":
             return all(kept)
         return self.solids.clear([place, pane.target], self._named(sight), 0.0)
@@ -509,14 +511,13 @@ class Case:
         rays = [sub(point, place) for point in [pane.c, *(pane.corners if self.whole else [])]]
         axes = zip((right, up), self.half, strict=True)
         spare = [dot(forward, v) * half - abs(dot(axis, v)) for axis, half in axes for v in rays]
-        is_seen = min(spare) >= E and min([dot(forward, v) for v in rays]) >= E
-        return is_seen and self.lies_in(place, element, self.proof["sights"][element] if self.occlusion == "on" else [])
+        sight = self.proof["sights"][element] if self.occlusion == "on" else []
+        return min(spare) >= E and self.lies_in(place, element, sight)
 
     def coverage(self) -> str:
         stated, seen = get(self.plan, "coverage", dict), get(self.proof, "seen", list)
-        total, covered = len(self.panes) * self.n, number(stated, "covered", 0.0)
+        total, covered = len(self.panes) * self.n, number(stated, "covered")
         demand(number(stated, "total") == total, f"there are {total} sections, the plan states another number", FALSE)
-        demand(len(seen) == total, "'seen' of the proof does not name a view for each section")
         views = [(e, place_in(k, len(self.views), "seen")) for e, k in enumerate(seen) if k != -1.0]
         found = sum([self.covers(self.views[view], element) for element, view in views])
         demand(found >= covered, f"{found} of {covered:g} sections are shown to be covered")
@@ -524,7 +525,7 @@ class Case:
 
     def reachable(self) -> str:
         total, done, shown = len(self.panes) * self.n, set(), 0
-        bound = number(get(self.plan, "coverage", dict), "reachable_upper_bound", 0.0)
+        bound = number(get(self.plan, "coverage", dict), "reachable_upper_bound")
         for row in get(self.proof, "boxes", list):
             done.add(place_in(row[0], total, "boxes"))
             self._exclude(int(row[0]), row[1])
@@ -545,15 +546,15 @@ class Case:
         What rules out a box is that a function is negative in it. All of them are convex, so the corners tell.
         """
         pane, ring, sector = self._section(element)
-        ((s0, c0), (s1, c1)), (s, c) = self.angles[sector : sector + 2], self.angles[ring + 1]
+        (s0, c0), (s1, c1), (s, c) = [self.angle(k) for k in (sector, sector + 1, ring + 1)]
         sides = [pane.n, plus(scaled(pane.b, c0), pane.t, -s0), plus(scaled(pane.t, s1), pane.b, -c1)]
         cones: list[tuple[Vec, float]] = [((0.0, 0.0, -1.0), self.steepest[0]), ((0.0, 0.0, 1.0), self.steepest[1])]
-        cones += [(pane.n, self.angles[ring][1])] if ring > 0 else []
+        cones += [(pane.n, self.angle(ring)[1])]
         boxes, at = list[tuple[Vec, Vec]]([(self.low, self.high)]), 0
         while boxes:
             (low, high), leaf = boxes.pop(), re.compile(r"[XYZpct]|[dq]([0-9]{1,7})\.").match(text, at)
             demand(leaf is not None, "a tree of the proof is damaged")
-            at, kind, k = leaf.end(), leaf[0][0], int(leaf[1] or 0)  # type: ignore[union-attr, index]
+            at, kind, k = leaf.end(), leaf[0][0], leaf[1]  # type: ignore[union-attr, index]
             if kind in "XYZ":
                 axis = "XYZ".index(kind)
                 middle = ((low[axis] + high[axis]) * 0.5,)
@@ -563,7 +564,7 @@ class Case:
             corners: list[Vec] = list(product(*zip(low, high, strict=True)))
             rays = [sub(corner, pane.c) for corner in corners]
             if kind == "p":  # on the far side of a plane that has the section on the other
-                forms, centre = [(m, 0.0) for m in sides], scaled(plus(rays[0], rays[7]), 0.5)
+                forms, centre = [(m, 0.0) for m in sides], plus(rays[0], rays[7])
                 u, v = dot(centre, pane.t), dot(centre, pane.b)
                 side = sqrt(u * u + v * v)
                 if side > E:
@@ -577,11 +578,10 @@ class Case:
                 heights = self.terrain.nodes(low, high) if self.terrain else [-UNKNOWN_M]
                 holds = high[2] <= min(heights) + self.height_m - SAME_M
             elif kind == "d":  # too close to a triangle
-                holds = all([distance(corner, self.solids.triangles[k]) <= self.near_m - E for corner in corners])
+                holds = all([distance(corner, self.solids.triangles[int(k)]) <= self.near_m - E for corner in corners])
             else:
-                holds = self.occlusion == "on" and self._is_hidden(element // self.n, k, corners)
+                holds = self.occlusion == "on" and self._is_hidden(element // self.n, int(k), corners)
             demand(holds, f"box {at} of section {element} is not excluded")
-        demand(at == len(text), "a tree of the proof is damaged")
 
     def _is_hidden(self, panel: int, patch: int, corners: list[Vec]) -> bool:
         """Whether a box lies in the shadow of triangles as seen from a panel's target.
@@ -611,7 +611,7 @@ class Case:
         (faces, planes), rays = self.shadows[panel, patch], [sub(corner, eye) for corner in corners]
         beyond = all([dot(n, sub(corner, a)) >= R * length(sub(corner, a)) + E for a, n in faces for corner in corners])
         left = all([dot(m, d) >= R * length(d) for m in planes for d in rays])
-        return beyond and left and len(planes) > 0
+        return beyond and left and planes != []
 
 
 # Mission files. They are taken as Reflight writes them, and anything else in them proves nothing.
@@ -636,8 +636,8 @@ def members(content: bytes, names: tuple[bytes, ...]) -> list[str]:
         start, reader = at + 30 + len(name), zlib.decompressobj(-15)
         text = reader.decompress(content[start : start + packed], 100_000_000)
         head = (mark, flags, method, n_name, n_extra, content[at + 30 : start]) == (b"PK\3\4", 0, 8, len(name), 0, name)
-        whole = reader.eof and not reader.unused_data and start + packed <= len(content)
-        demand(head and whole and (len(text), zlib.crc32(text)) == (size, crc), damaged)
+        whole = reader.eof and not reader.unused_data and (len(text), zlib.crc32(text)) == (size, crc)
+        demand(head and whole, damaged)
         directory += b"PK\1\2\x14\3" + content[at + 4 : at + 30] + struct.pack("<3H2I", 0, 0, 0, 0o644 << 16, at) + name
         at, texts = start + packed, [*texts, text.decode("ascii")]
     end = b"PK\5\6" + struct.pack("<4H2IH", 0, 0, len(names), len(names), len(directory), at, 0)
@@ -760,8 +760,8 @@ class Mission:
             photos += [(len(places) - 1.0, n["h"], n["p"])] if "h" in n else []
             returns, self.zooms = returns + [n[k] for k in "cr" if k in n], self.zooms + [n[k] for k in "q" if k in n]
             self.speeds = self.speeds + [n.get("v", 0.0)]
-            waits = [n.get(wait, 0.0) for wait in "swf"]
-            is_right = min(waits) >= 0.0 and max(waits) <= 60.0 and n.get("i", len(places) - 1) == len(places) - 1
+            waits = [n[k] for k in "swf" if k in n]
+            is_right = all([0.0 <= wait <= 60.0 for wait in waits]) and n.get("i", len(places) - 1) == len(places) - 1
             demand(is_right and all([abs(x) <= 1e6 for x in n.values()]), "a wait or a number is wrong")
         demand(re.fullmatch(order, letters) is not None, "its parts are not in the order in which Reflight writes them")
         demand(all([height > 0.0 for height in returns]), "a height of return is not above take-off")
@@ -782,7 +782,7 @@ def flies(case: Case, mission: Mission) -> int:
         last = len(path) - mission.is_dji  # DJI missions end above home, and return from there
         kept = [k for k in range(1, last) if k == 1 or not is_same(path[k], path[k - 1])]
         at = [sum([1 for j in kept if j <= k]) - 1.0 for k in case.photos_of(s)]
-        views = [case.by_id[name] for name in case.sorties[s]["viewpoint_ids"]]
+        views = [case.by_id[name] for name in case.flown[s]]
         if len(places) == len(kept) and len(views) == len(mission.photos):
             same = [length(sub(p, path[k])) <= MISSION_M for p, k in zip(places, kept, strict=True)]
             for (_, _, heading, pitch), k, photo in zip(views, at, mission.photos, strict=True):

@@ -13,15 +13,17 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from random import Random
-from tempfile import TemporaryDirectory
 from types import ModuleType
 from typing import Any
 
 from tests.planning.proof.verifiers import PLAN, PROOF, SITE
 
-HALVINGS = 52
+MOST_HALVINGS = 100
+"""A border at zero is not looked for to its last digit."""
 
 Verdict = Callable[[float], object]
+
+Vec = tuple[float, ...]
 
 
 def border(verdict: Verdict, low: float, high: float) -> tuple[object, object, float]:
@@ -29,8 +31,10 @@ def border(verdict: Verdict, low: float, high: float) -> tuple[object, object, f
     first, last = verdict(low), verdict(high)
     if first == last:
         return first, last, low
-    for _ in range(HALVINGS):
+    for _ in range(MOST_HALVINGS):
         middle = 0.5 * (low + high)
+        if middle in (low, high):
+            break
         if verdict(middle) == first:
             low = middle
         else:
@@ -60,6 +64,16 @@ class Probe:
             return type(error).__name__
         return "proved" if isinstance(found, str) else found
 
+    def refusal(self, prove: Callable[[], Any]) -> str:
+        """The words with which a question is refused, or the error in which it ends."""
+        try:
+            prove()
+        except self.module.Refused as refused:
+            return str(refused)
+        except Exception as error:  # which error it is, is the answer
+            return type(error).__name__
+        return ""
+
     def with_number(self, name: str, path: Sequence[Any], value: Any) -> dict[str, Any]:
         """One of the three records with another number at a place."""
         record = copy.deepcopy(getattr(self, name))
@@ -68,6 +82,9 @@ class Probe:
             parent = parent[key]
         parent[path[-1]] = value
         return {name: record}
+
+
+Section = Callable[[Probe], Iterator[Any]]
 
 
 def _of_paths(probe: Probe) -> Iterator[Any]:
@@ -220,154 +237,6 @@ def _endurance(probe: Probe, case: Any) -> object:
     return proved, border(lambda x: lasts(x) == "false", 0.0, 1e5)
 
 
-def _of_views(probe: Probe) -> Iterator[Any]:
-    """Places that leave their section, and panels that leave the picture."""
-    case = probe.case()
-    seen = [(element, int(k)) for element, k in enumerate(probe.proof["seen"]) if k >= 0]
-    for element, k in seen:
-        name, place, heading, pitch = case.views[k]
-        sight = probe.proof["sights"][element]
-        for axis, way in [(axis, way) for axis in range(3) for way in (-30.0, 30.0)]:
-
-            def moved(x: float, axis: int = axis, of: Any = (place, element, sight)) -> object:
-                p = (*of[0][:axis], of[0][axis] + x, *of[0][axis + 1 :])
-                return probe.said(lambda: case.lies_in(p, of[1], of[2]))
-
-            for occlusion in ("on", "off"):
-                case.occlusion = occlusion
-                yield border(moved, 0.0, way)
-            case.occlusion = "on"
-        kept = case.far_m
-        yield border(
-            lambda x, of=(place, element, sight): setattr(case, "far_m", x) or probe.said(lambda: case.lies_in(*of)),
-            100.0,
-            0.0,
-        )
-        case.far_m = kept
-        for whole in (False, True):
-            case.whole = whole
-            for turn, way in [(turn, way) for turn in (2, 3) for way in (-80.0, 80.0)]:
-
-                def turned(
-                    x: float, turn: int = turn, of: Any = (name, place, heading, pitch), e: int = element
-                ) -> object:
-                    view = (*of[:turn], of[turn] + x, *of[turn + 1 :])
-                    return probe.said(lambda: case.covers(view, e))
-
-                yield border(turned, 0.0, way)
-        case.whole = False
-        for way in (-1.0, 1.0):
-            panel = case.panes[element // case.n]
-            behind = tuple(p + way * 30.0 * n for p, n in zip(panel.c, panel.n, strict=True))
-            view = (name, behind, heading, pitch)
-            yield probe.said(lambda e=element, view=view: case.covers(view, e))
-    for half in (0.1, 0.7, 2.0):
-        case.half = [half, half]
-        yield [case._steepest(pitch) for pitch in (-91.0, -90.0, -60.0, -1e-9, 0.0, 20.0, 35.0, 60.0, 89.0, 90.0, 91.0)]
-        yield border(lambda x: case._steepest(x) == 2.0, 0.0, 91.0)
-        yield border(lambda x: case._steepest(x) > 0.0, -90.0, 35.0)
-    case = probe.case()
-    names = ("covered", "total", "reachable_upper_bound")
-    for name, by in [(name, by) for name in names for by in (-1.0, 0.0, 1.0)]:
-        case.plan["coverage"][name] = probe.plan["coverage"][name] + by
-        yield probe.said(case.coverage), probe.said(case.reachable)
-        case.plan["coverage"][name] = float(probe.plan["coverage"][name])
-    low, high = case.pitches
-    for pitch in (-90.0, -20.0, 35.0):
-        case.views = [(*view[:3], pitch) for view in case.views]
-        yield border(lambda x: setattr(case, "pitches", (x, high)) or probe.said(case.gimbal), -180.0, 36.0)
-        yield border(lambda x: setattr(case, "pitches", (low, x)) or probe.said(case.gimbal), 180.0, -91.0)
-    case.pitches = (low, high)
-    for far in (-400.0, 400.0):
-        yield border(
-            lambda x: setattr(case, "views", [(*v[:2], x, v[3]) for v in case.views]) or probe.said(case.gimbal),
-            0.0,
-            far,
-        )
-
-
-def _of_boxes(probe: Probe) -> Iterator[Any]:
-    """How large a box may be that is excluded, for each reason; and how large one in a shadow."""
-    random, case = Random(7), probe.case()
-    low, high = case.low, case.high
-    n_triangles, n_patches = len(case.solids.triangles), len(probe.proof["patches"])
-    leaves = ["p", "c", *(f"d{k}." for k in range(n_triangles)), *(f"q{k}." for k in range(n_patches))]
-    counts = dict.fromkeys("pcdq", 0)
-    for _ in range(1500):
-        leaf, element = random.choice(leaves), random.randrange(len(case.panes) * case.n)
-        centre = [random.uniform(a, b) for a, b in zip(low, high, strict=True)]
-        case.far_m = random.choice((1e6, 12.0))
-        sizes = [random.uniform(0.2, 1.0) for _ in range(3)]
-
-        def excluded(size: float, of: Any = (leaf, element, centre, sizes)) -> object:
-            leaf, element, centre, sizes = of
-            case.low = tuple(c - size * s for c, s in zip(centre, sizes, strict=True))
-            case.high = tuple(c + size * s for c, s in zip(centre, sizes, strict=True))
-            return probe.said(lambda: case._exclude(element, leaf))
-
-        if counts[leaf[0]] < 20 and excluded(1e-6) is None:
-            counts[leaf[0]] += 1
-            yield leaf, border(excluded, 1e-6, 60.0)
-    case.low, case.high = low, high
-    for text in ("X", "pp", "", "Xp", "x", "d.", "d1", "q9.", "d99999.", "Xppp", "d12345678."):
-        yield text, probe.said(lambda text=text: case._exclude(0, text))
-    for element, text in probe.proof["boxes"]:
-        yield probe.said(lambda e=element, t=text: case._exclude(e, t))
-        yield probe.said(lambda e=element, t=text: case._exclude((e + 1) % case.n, t))
-    for patch in ([0.0, 0.0], [4.0, 4.0], [0.0, 1.0], [4.0, 5.0], [4.5], [-1.0], []):
-        case.proof["patches"] = [patch]
-        case.shadows.clear()
-        yield patch, probe.said(lambda: case._is_hidden(0, 0, [(0.0, 0.0, 0.0)] * 8))
-
-
-def _of_missions(probe: Probe) -> Iterator[Any]:
-    """What missions say, and how far they may be off."""
-    module, case = probe.module, probe.case()
-    for path in sorted(probe.folder.iterdir()):
-        if path.suffix not in (".kmz", ".plan", ".waypoints"):
-            continue
-        mission = module.Mission(path.read_bytes(), path.suffix)
-        yield vars(mission)
-        kept = copy.deepcopy(vars(mission))
-
-        def flies(prepare: Callable[[float], None], mission: Any = mission) -> Verdict:
-            return lambda x: prepare(x) or probe.said(lambda: module.flies(case, mission))
-
-        for k, axis in [(k, axis) for k in (0, -1) for axis in range(3)]:
-
-            def place(x: float, k: int = k, axis: int = axis, kept: Any = kept, mission: Any = mission) -> None:
-                mission.places = list(kept["places"])
-                p = mission.places[k]
-                mission.places[k] = (*p[:axis], p[axis] + x, *p[axis + 1 :])
-
-            for far in (-1.0, 1.0):
-                yield border(flies(place), 0.0, far * (1.0 if axis == 2 else 1e-5))
-            mission.places = kept["places"]
-        for turn in range(3):
-
-            def photo(x: float, turn: int = turn, kept: Any = kept, mission: Any = mission) -> None:
-                mission.photos = list(kept["photos"])
-                mission.photos[0] = (
-                    *mission.photos[0][:turn],
-                    mission.photos[0][turn] + x,
-                    *mission.photos[0][turn + 1 :],
-                )
-
-            for far in (-1.0, 1.0, 360.0):
-                yield border(flies(photo), 0.0, far)
-            mission.photos = kept["photos"]
-        yield border(flies(lambda x, m=mission: setattr(m, "speeds", [0.0, x])), 0.0, 100.0)
-        yield border(flies(lambda x, m=mission: setattr(m, "zooms", [x])), 24.0, 200.0)
-        yield border(flies(lambda x, m=mission: setattr(m, "zooms", [x])), 24.0, 0.0)
-        mission.speeds, mission.zooms = kept["speeds"], kept["zooms"]
-        yield border(flies(lambda x, m=mission: setattr(m, "returns", [x, 18.0])), 18.0, 90.0)
-        mission.returns = kept["returns"]
-        mission.places = kept["places"][:-1]
-        yield probe.said(lambda m=mission: module.flies(case, m))
-        mission.places, mission.photos = kept["places"], kept["photos"][:-1]
-        yield probe.said(lambda m=mission: module.flies(case, m))
-
-
 def _of_level_ground(probe: Probe) -> Iterator[Any]:
     """What counts as the ground where the proof says that the terrain is level, and how level it must be."""
     import base64
@@ -483,32 +352,16 @@ def _of_terrain(probe: Probe) -> Iterator[Any]:
         (packed, {"rows": 3.0}),
         (packed, {"rows": 1.0, "columns": 20.0}),
         (packed, {"columns": 1.0, "rows": 20.0}),
+        (packed, {"columns": 99_999.0}),
+        (packed, {"columns": 100_000.0}),
+        (zlib.compress(bytes(16_399_836)), {"columns": 99_999.0, "rows": 41.0}),
         (few, {"columns": 2.0, "rows": 2.0}),
-        *((packed, {"step_m": step}) for step in (0.01, 0.0099, 1e4, 1.1e4)),
-        *((packed, {"accuracy_m": value}) for value in (0.0, -1e-9, 1e4, 1.1e4)),
+        *((packed, {"step_m": step}) for step in (0.01, 0.0099, 1e4, 10000.5)),
+        *((packed, {"accuracy_m": value}) for value in (0.0, -1e-9, 1e4, 10000.5)),
     ):
         again = record(packed_again, **facts)
+        yield probe.refusal(lambda r=again: module.Terrain(r))
         yield facts, probe.said(lambda r=again: module.Terrain(r).z), probe.said(lambda r=again: module.Terrain(r).size)
-
-
-def _of_folders(probe: Probe) -> Iterator[Any]:
-    """Which missions belong to which proof."""
-    with TemporaryDirectory() as name:
-        folder = Path(name)
-        names = [
-            "a.kmz",
-            "a-2.kmz",
-            "a-x.kmz",
-            "ab.kmz",
-            "a.kmz.mission.proof",
-            "plan.proof",
-            "a.plan",
-            "akmz",
-            "a+kmz",
-        ]
-        for each in (*names, "b.proof", "proof", "-3.proof", "a-2.proof"):
-            (folder / each).write_bytes((probe.folder / PROOF).read_bytes())
-        yield [[path.name for path in job] for job in probe.module.jobs_of(folder)]
 
 
 LIMITED: tuple[tuple[str, tuple[Any, ...], tuple[float, ...]], ...] = (
@@ -545,13 +398,44 @@ LIMITED: tuple[tuple[str, tuple[Any, ...], tuple[float, ...]], ...] = (
 )
 """Fields, and the limits of what is taken from them."""
 
+STEP = ("constraints", "section_step_deg")
+
+REPLACED: tuple[tuple[str, tuple[Any, ...]], ...] = (
+    *(("site", (name,)) for name in ("format", "origin", "facades", "building_mesh", "obstacles", "airspace")),
+    *(("site", (name,)) for name in ("home_enu_m", "terrain", "zones")),
+    *(("site", ("airspace", name)) for name in ("no_fly", "min_enu_m", "ground_z_m")),
+    *(("plan", (name,)) for name in ("format", "camera", "constraints", "viewpoints", "sorties", "aircraft", "rules")),
+    *(("plan", (name,)) for name in ("origin", "home_enu_m", "coverage", "site_sha256")),
+    *(("plan", ("constraints", name)) for name in ("occlusion", "whole_panel", "max_distance_m")),
+    *(("plan", ("sorties", 0, name)) for name in ("viewpoint_ids", "path_enu_m", "in_passing_ids", "start_s")),
+    *(("proof", (name,)) for name in ("format", "directions", "legs", "no_fly", "returns", "outside", "meshes")),
+    *(("proof", (name,)) for name in ("seen", "sights", "boxes", "witnesses", "patches", "outside_directions")),
+    *(("proof", (name,)) for name in ("site", "plan", "return_height_m", "return_kept_m", "level_within_m")),
+)
+"""Parts that are left out, or something else than they should be."""
+
+ODD: tuple[Any, ...] = (None, [], {}, "", [{}], 0.0)
+
+
+def beside(limit: float) -> tuple[float, float, float]:
+    """A limit, and numbers right above and below it."""
+    return limit, limit * (1.0 + 1e-9) + 1e-12, limit * (1.0 - 1e-9) - 1e-12
+
+
+def changed_parts() -> Iterator[tuple[str, tuple[Any, ...], Any]]:
+    """Records, places in them and what is put there: numbers at their limits, odd parts, bodies of all kinds."""
+    for name, path, limits in LIMITED:
+        yield from ((name, path, value) for limit in limits for value in beside(limit))
+    yield from ((name, path, odd) for name, path in REPLACED for odd in ODD)
+    yield from (("site", ("obstacles",), [{"id": "it", **body}]) for body in BODIES)
+
 
 def _of_numbers(probe: Probe) -> Iterator[Any]:
     """What is said of numbers at their limits, and right beside them."""
     claims = ("sorties_", "gimbal", "airspace", "battery", "apart", "coverage")
     for name, path, limits in LIMITED:
         for limit in limits:
-            for value in (limit, limit * (1.0 + 1e-9) + 1e-12, limit * (1.0 - 1e-9) - 1e-12):
+            for value in beside(limit):
                 changed = probe.with_number(name, path, value)
                 found = probe.said(lambda changed=changed: probe.case(**changed))
                 asked = [] if isinstance(found, str) else [probe.said(getattr(found, claim)) for claim in claims]
@@ -572,8 +456,17 @@ def _of_numbers(probe: Probe) -> Iterator[Any]:
     ):
         changed = probe.with_number("plan", of_plan, heights[0]) | probe.with_number("site", of_site, heights[1])
         yield probe.said(lambda changed=changed: probe.case(**changed).low)
-    for name, path in (("site", ("terrain",)), ("site", ("zones",)), ("plan", ("rules",)), ("plan", ("origin",))):
-        for odd in (None, [], {}, "", [{}], 0.0):
+    for focal_mm in beside(0.01):
+        small = {"focal_length_mm": focal_mm, "sensor_width_mm": 0.1, "sensor_height_mm": 0.1}
+        plan = {**probe.plan, "camera": {**probe.plan["camera"], **small}}
+        yield probe.said(lambda plan=plan: probe.case(plan=plan).half)
+    for whole in (30.0, 45.0):  # divisors of 90 degrees, and how far a step may be off
+        for high in (whole - 1.0, whole + 1.0):
+            yield border(
+                lambda step: probe.said(lambda: probe.case(**probe.with_number("plan", STEP, step)).n), whole, high
+            )
+    for k, (name, path) in enumerate(REPLACED):
+        for odd in (None, ODD[1 + k % (len(ODD) - 1)]):
             changed = probe.with_number(name, path, odd)
             found = probe.said(lambda changed=changed: probe.case(**changed))
             claimed = (
@@ -582,16 +475,210 @@ def _of_numbers(probe: Probe) -> Iterator[Any]:
             yield path, odd, claimed
 
 
-SECTIONS: tuple[Callable[[Probe], Iterator[Any]], ...] = (
+BODIES: tuple[Mapping[str, Any], ...] = (
+    {"mesh": "shop.ply"},
+    {"mesh": "shop.ply", "box_enu_m": [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]},
+    {"mesh": "shop.ply", "box_enu_m": []},
+    *({"box_enu_m": [[float(k)] * 3 for k in range(n)]} for n in range(4)),
+    *({"mesh": name} for name in ("../0/shop.ply", "./shop.ply", "shop..ply", "/shop.ply", "C:shop.ply", "", "x.ply")),
+    *({"mesh": name} for name in ("a\\shop.ply", "shop.ply\n", "shop.ply/", ".", "..", "a/../shop.ply")),
+    {"box_enu_m": [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]], "mesh ": "shop.ply"},
+)
+
+
+def _of_bodies(probe: Probe) -> Iterator[Any]:
+    """What counts as an obstacle, and which files of meshes are opened."""
+    for body in BODIES:
+        site = copy.deepcopy(probe.site)
+        site["obstacles"] = [{"id": "it", **body}]
+        yield probe.said(lambda site=site: len(probe.case(site=site).solids.triangles))
+        yield probe.refusal(lambda site=site: probe.case(site=site))
+    for n in (3, 5):
+        site = copy.deepcopy(probe.site)
+        corners = site["facades"][0]["panels"][0]["corners_enu_m"]
+        site["facades"][0]["panels"][0]["corners_enu_m"] = (2 * corners)[:n]
+        yield probe.said(lambda site=site: len(probe.case(site=site).panes))
+
+
+def _of_sorties(probe: Probe) -> Iterator[Any]:
+    """Paths with views at home, at places that are passed twice, and at vertices that share photos."""
+    home, up, beside = (0.0, 0.0, 0.0), (0.0, 0.0, 5.0), (3.0, 0.0, 5.0)
+    low, least = (0.0, 0.0, 1.99), (0.0, 0.0, 1.999)
+    flights: tuple[tuple[Sequence[Vec], Sequence[Vec]], ...] = (
+        *(((home, top, home), (top,)) for top in (up, low, least)),
+        *(((home, up, home), views) for views in ((home,), (home, home), (home, up), (up, home), (up, up))),
+        *(((home, up, beside, up, home), views) for views in ((up,), (up, beside), (beside, up), (up, beside, up))),
+        *(((home, up, beside, up, home), views) for views in ((beside, beside), (up, up), (up, up, up), ())),
+        *(((home, up, up, beside, beside, up, home), views) for views in ((up, up, beside), (beside, up, up))),
+        *((path, (up,)) for path in ((home, up), (home,), (home, home, home), (home, up, up), (up, up, home))),
+        *((path, (up,)) for path in ((home, beside, up, home), (home, up, beside, home))),
+    )
+    case = probe.case()
+    case.home = home
+    case.plan = {key: value for key, value in probe.plan.items() if key not in ("home_enu_m", "origin")}
+    for path, views in flights:
+        case.paths, case.views = [list(path)], [(f"v{k}", view, 0.0, 0.0) for k, view in enumerate(views)]
+        case.by_id = {view[0]: view for view in case.views}
+        for names in ([view[0] for view in case.views], ["v9"]):
+            case.sorties, case.flown = [{}], [names]
+            yield probe.said(case.sorties_), probe.said(lambda: case.photos_of(0))
+    case.sorties, case.flown = [{}, {}], [["v0"], ["v1"]]
+    case.paths, case.views = [[home, up, home], [home, low, home]], [("v0", up, 0.0, 0.0), ("v1", low, 0.0, 0.0)]
+    case.by_id = {view[0]: view for view in case.views}
+    yield probe.said(case.sorties_), probe.said(lambda: case.photos_of(1))
+
+
+def _of_files(probe: Probe) -> Iterator[Any]:
+    """Hashes that are right, wrong, missing, or of other files."""
+    import hashlib
+
+    def named(**changed: Any) -> object:
+        """What is said of files whose hashes are right but for what is changed."""
+        plan, proof = copy.deepcopy(probe.plan), copy.deepcopy(probe.proof)
+        plan["site_sha256"] = changed.get("of_site", hashlib.sha256(json.dumps(probe.site).encode()).hexdigest())
+        for name, record in (("site", probe.site), ("plan", plan)):
+            proof[name]["sha256"] = changed.get(name, hashlib.sha256(json.dumps(record).encode()).hexdigest())
+        proof["meshes"] = changed.get("meshes", proof["meshes"])
+        return probe.said(probe.case(plan=plan, proof=proof).files)
+
+    mesh = probe.proof["meshes"][0]
+    yield named(), named(of_site="0" * 64), named(site="0" * 64), named(plan="0" * 64)
+    yield named(meshes=[]), named(meshes=[mesh, {**mesh, "name": "other.ply"}]), named(meshes=[mesh, mesh])
+    yield named(meshes=[{**mesh, "sha256": "0" * 64}]), named(meshes=[{**mesh, "name": "other.ply"}])
+
+
+def _of_ties(probe: Probe) -> Iterator[Any]:
+    """Comparisons with both sides the same, and what is false where something else is merely not proved."""
+    case = probe.case()
+    case.low, case.high, case.home = (-10.0, -10.0, 0.0), (10.0, 10.0, 10.0), (0.0, 0.0, 0.0)
+    for low in (1e-7, 0.99e-7, 0.0, -1e-7, -1.01e-7, -0.001, -1e5, -999999.9999999, -1000000.5, -1.5e6):
+        for high in (10.0, 10.1):
+            for x in (5.0, 0.0, -10.0, 10.0, 10.1):
+                case.legs = [(0, 0, (x, 0.0, low), (x, 0.0, high))]
+                yield probe.said(case.airspace)
+    case = probe.case()
+    case.plan["rules"] = {**case.plan["rules"], "battery_reserve": 0.0}
+    for stated, yaw in itertools.product((100.0, 100.01, 100.02), (60.0, 0.1)):
+        case.plan["aircraft"] = {**case.plan["aircraft"], "endurance_s": 100.0, "max_yaw_rate_deg_s": yaw}
+        case.sorties[0]["duration_s"] = stated
+        yield probe.said(case.battery)
+    path = list(case.paths[0])
+    for k, beside in itertools.product(range(len(path)), (0.0, 0.5)):
+        case.paths = [[*path[: k + 1], (path[k][0] + beside, *path[k][1:]), *path[k:]]]
+        yield _endurance(probe, case)
+    case.paths, near_m = [path], case.near_m
+    yield border(lambda x: setattr(case, "near_m", x) or probe.said(case.distance) == "false", 4.5, 8.0)
+    case.near_m = near_m
+    for direction, reached in (((1.0, 0.0, 0.0), 1.0), ((1.0000000000000002, 0.0, 0.0), 1.0), ((0.6, 0.8, 0.0), 0.5)):
+        record = probe.with_number("proof", ("directions", 0), list(direction))
+        yield reached, probe.said(lambda record=record: probe.case(**record).directions[0])
+    solids = probe.module.Solids([((4.0, 0.0, 0.0), (4.0, 1.0, 0.0), (4.0, 0.0, 1.0))])
+    point, by = (5.0, 0.0, 0.0), (0.5, 0.0, 0.0)
+    yield [solids.clear([point], [by], gap - 1e-7) for gap in (0.5, 0.4999999, 0.5000001)]
+    level = probe.module.Solids([((0.5 * (2.5 - 1e-7) * 2.0, 0.0, 0.0),) * 3])
+    yield level.clear([(5.0 - 0.0, 0.0, 0.0)], [by], 0.0), level.clear([point], [by], 1e-9)
+
+
+def _of_ways_outside(probe: Probe) -> Iterator[Any]:
+    """Where a way from home must end: beyond the bounds of all triangles, home itself within them."""
+    case, home = probe.case(), (5.0, 5.0, 5.0)
+    solids = probe.module.Solids([((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)), ((9.0, 9.0, 9.0),) * 3])
+    axes = [tuple(0.9 * sign * (axis == k) for k in range(3)) for axis in range(3) for sign in (-1.0, 1.0)]
+    slanted = [(a, b, c) for a in (-0.5, 0.5) for b in (-0.5, 0.5) for c in (-0.5, 0.5)]
+    case.directions, by = [*axes, *slanted], [float(k) for k in range(14)]
+    case.home, case.paths = home, [[home, home]]
+
+    def leaves(*way: Sequence[float], n_directions: int | None = None) -> object:
+        n = len(way) - 1 if n_directions is None else n_directions
+        case.proof = {**probe.proof, "outside": [list(p) for p in way], "outside_directions": [by] * n}
+        return probe.refusal(lambda: case._leaves(solids))
+
+    for axis, far in itertools.product(range(3), (-30.0, 30.0)):
+        yield border(lambda x, axis=axis: leaves(home, (*home[:axis], x, *home[axis + 1 :])), far, 5.0)
+    yield leaves(), leaves(home), leaves(home, (5.0, 5.0, 12.0), (20.0, 5.0, 12.0)), leaves((5.0, 5.0, 6.0), (5.0,) * 3)
+    yield leaves(home, (5.0, 5.0, 12.0), home), leaves(home, (0.5, 0.2, -3.0)), leaves(home, (0.2, 0.2, 1e-8))
+    yield leaves(home, (20.0, 5.0, 5.0), n_directions=0), leaves(home, (20.0, 5.0, 5.0), n_directions=2)
+    case.paths = [[home, home], [(5.0, 5.0, 5.5), home]]
+    yield leaves(home, (20.0, 5.0, 5.0))
+    near = probe.case()
+    near.legs = [(0, 0, (-40.0, -3.5, 3.0), (40.0, -3.5, 3.0))]
+    yield border(lambda x: setattr(near, "near_m", x) or probe.said(near.distance), 0.1, 4.0)
+    zone = list(case.no_fly.triangles)
+
+    def shifted(x: float) -> object:
+        near.no_fly = probe.module.Solids([tuple((p[0] + x, *p[1:]) for p in triangle) for triangle in zone])
+        return probe.said(near.no_fly_)
+
+    near = probe.case()
+    yield border(shifted, 0.0, 30.0)
+    without = copy.deepcopy(probe.site)
+    without["airspace"]["no_fly"] = []
+    yield probe.said(probe.case(site=without).no_fly_)
+    near.legs = []
+    for high in (90.0, -1.0):
+        yield border(lambda x: near.proof.update(return_height_m=x) or probe.said(near.return_), 18.0, high)
+    craft = {key: value for key, value in near.plan["aircraft"].items() if key != "max_wind_m_s"}
+    for wind in (9.9, 10.0, 10.5):
+        near.plan = {**near.plan, "aircraft": craft, "rules": {**near.plan["rules"], "wind_m_s": wind}}
+        yield probe.said(near.battery)
+    near.plan["aircraft"] = {**craft, "max_speed_m_s": 8.0}
+    for wind in (7.5, 8.0, 8.5):
+        near.plan["rules"] = {**near.plan["rules"], "wind_m_s": wind}
+        yield probe.said(near.battery)
+    quick = probe.case()  # the gimbal takes longer than turns and photos
+    kept = {
+        k: v for k, v in quick.plan["aircraft"].items() if k not in ("max_gimbal_rate_deg_s", "min_photo_interval_s")
+    }
+    quick.plan = {**quick.plan, "aircraft": kept, "rules": {**quick.plan["rules"], "settle_s": 0.1, "photo_s": 0.1}}
+    quick.by_id = {v[0]: (*v[:2], 0.0, 35.0 if k % 2 else -90.0) for k, v in enumerate(quick.views)}
+    yield _endurance(probe, quick)
+    names = quick.plan["sorties"][0]["viewpoint_ids"]
+    yield probe.said(lambda: probe.case(**probe.with_number("plan", ("constraints", "occlusion"), "of")).occlusion)
+    for sorties in ([{}, {}], [{}, {"start_s": 1.0}], [{"start_s": 0.0}, {"start_s": 1.0}]):
+        quick.sorties = sorties
+        yield probe.said(quick.apart)
+    for odd in ([5.0, *names[1:]], [names[0], *names], [[names[0]]], [None]):
+        changed = probe.with_number("plan", ("sorties", 0, "viewpoint_ids"), odd)
+        yield probe.said(lambda changed=changed: probe.case(**changed).sorties_())
+
+
+def _of_returns(probe: Probe) -> Iterator[Any]:
+    """Returns of a leg that sinks below their height, before small obstacles around it."""
+    case, random = probe.case(), Random(9)
+    ways = [tuple(random.gauss(0.0, 1.0) for _ in range(3)) for _ in range(150)]
+    case.directions = [tuple(0.999 * x / sum(y * y for y in way) ** 0.5 for x in way) for way in ways]
+    every = [float(k) for k in range(len(ways))]
+    case.home, case.near_m, case.high = (0.0, 0.0, 0.0), 0.4, (99.0, 99.0, 99.0)
+    case.proof = {**probe.proof, "return_kept_m": 0.2, "return_height_m": 5.0, "returns": [[every]]}
+    apart = probe.module.Solids([((50.0, 50.0, 50.0),) * 3])
+    for ends in (
+        ((4.0, 0.0, 9.0), (8.0, 0.0, 3.0)),
+        ((8.0, 0.0, 3.0), (4.0, 0.0, 9.0)),
+        ((4.0, 3.0, 2.0), (8.0, 0.0, 7.0)),
+    ):
+        case.legs = [(0, 0, *ends)]
+        for x, z in itertools.product((-1.0, 0.0, 2.0, 4.0, 5.0, 6.0, 8.0), (1.0, 3.5, 4.6, 6.0, 8.0, 9.5)):
+            small = probe.module.Solids([((x, 0.0, z), (x + 0.1, 0.0, z), (x, 0.0, z + 0.1))])
+            case.solids, case.no_fly = small, apart
+            yield probe.said(case.return_)
+            case.solids, case.no_fly = apart, small
+            yield probe.said(case.return_)
+    for y in (0.5, 1.0):
+        case.no_fly = probe.module.Solids([((4.0, y, 4.0), (4.1, y, 4.0), (4.0, y, 4.1))])
+        yield probe.said(case.return_)
+
+
+SECTIONS: tuple[Section, ...] = (
+    _of_files,
+    _of_sorties,
+    _of_ties,
+    _of_ways_outside,
+    _of_returns,
     _of_terrain,
     _of_level_ground,
     _of_paths,
     _of_limits,
     _of_batteries,
-    _of_views,
-    _of_boxes,
-    _of_folders,
     _of_numbers,
-    _of_missions,
+    _of_bodies,
 )
-"""What is asked, the quick ones first."""

@@ -14,9 +14,23 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planning.proof import reflight_verify as verifier
+from tests.planning.proof.attack import same
+from tests.planning.proof.borders import changed_parts
 from tests.planning.proof.probes import JSON_TEXTS, meshes
 from tests.planning.proof.scenes import kept_hut
-from tests.planning.proof.verifiers import NODE, PAGE, QtScript, by_module, by_node, load, mission_names
+from tests.planning.proof.tamper import parent_of, sealed
+from tests.planning.proof.verifiers import (
+    NODE,
+    PAGE,
+    PLAN,
+    PROOF,
+    SITE,
+    QtScript,
+    by_module,
+    by_node,
+    load,
+    mission_names,
+)
 
 Place = tuple[float, float, float]
 
@@ -31,6 +45,22 @@ def test_the_page_proves_what_the_program_proves_in_the_same_words(page: QtScrip
     claims = page(files)
     assert claims == by_module(load(), files, tmp_path)
     assert {claim.verdict for claim in claims} == {"proved"}
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(NODE is None, reason="Node is not installed")
+def test_the_page_says_the_same_of_numbers_at_their_limits_and_of_odd_parts(tmp_path: Path) -> None:
+    hut, _ = kept_hut()
+    found, kinds = [], list(changed_parts())
+    for record, path, value in kinds:
+        name = {"site": SITE, "plan": PLAN, "proof": PROOF}[record]
+        content = json.loads(hut[name])
+        parent_of(content, path)[path[-1]] = value
+        found.append(sealed({**hut, name: json.dumps(content).encode()}))
+    module, folder = load(), tmp_path / "files"
+    folder.mkdir()
+    for kind, files, page_claims in zip(kinds, found, by_node(found, tmp_path), strict=True):
+        assert same(by_module(module, files, folder), page_claims), kind
 
 
 @pytest.mark.skipif(NODE is None, reason="Node is not installed")
