@@ -75,6 +75,7 @@ BENCHMARKS: tuple[Benchmark, ...] = (
     reachable.BENCHMARK,
     certificates.BENCHMARK,
     proof_attacks.BENCHMARK,
+    proof_attacks.MUTANTS_BENCHMARK,
     fresh_process.BENCHMARK,
     fresh_process.BUDGETS_BENCHMARK,
     tsplib_tours.BENCHMARK,

@@ -1,4 +1,7 @@
-"""Tampered sites, plans, proofs and missions: what the verifier says of them, and what an exact judge says."""
+"""Tampered sites, plans, proofs and missions: what the verifier says of them, and what an exact judge says.
+
+And mutants of the verifier: whether anything tells them from it.
+"""
 
 from __future__ import annotations
 
@@ -7,15 +10,17 @@ import tempfile
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from random import Random
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from tests.benchmarks.harness import Benchmark, Context, Row
 from tests.planning.proof.attack import Judge, same, wrongly_proved
+from tests.planning.proof.mutants import is_equivalent, mutants, questions, told_by
 from tests.planning.proof.scenes import kept_hut
 from tests.planning.proof.tampering import TAMPERINGS, of_kinds, tampered
-from tests.planning.proof.verifiers import NODE, by_module, by_node, load
+from tests.planning.proof.verifiers import NODE, PYTHON, by_module, by_node, load
 
 N_QUICK, N_FULL = 2, 295
 """Of each kind."""
@@ -94,4 +99,51 @@ BENCHMARK = Benchmark(
     "claim that the verifier still calls proved is judged in exact rational numbers over all triangles. A claim that "
     "is proved and false would count as wrongly proved; what stays proved is true, because the change was harmless.",
     measure,
+)
+
+
+EVERY_QUICK = 170
+"""One mutant in so many, where it must be quick."""
+
+ALL = "all kinds"
+
+Fate = Literal["told", "the same", "not told"]
+
+
+def fates(part: int, n_parts: int, every: int) -> list[tuple[str, Fate, str]]:
+    """Of a part of the mutants: their kinds, what became of each, and where it is and what it changes."""
+    source = PYTHON.read_text(encoding="utf-8")
+    lines, found = source.splitlines(), list[tuple[str, Fate, str]]()
+    with tempfile.TemporaryDirectory() as name:
+        asked = questions(Path(name))
+        for mutant in mutants(source)[::every][part::n_parts]:
+            is_same = is_equivalent(mutant, lines)
+            fate: Fate = "the same" if is_same else "not told" if told_by(mutant, asked) is None else "told"
+            found.append((mutant.kind, fate, f"line {mutant.line}: {mutant.change}"))
+    return found
+
+
+def measure_mutants(context: Context) -> Iterator[Row]:
+    """By kind of change: how many mutants nothing tells from the verifier, and each of them."""
+    n, every = os.cpu_count() or 1, EVERY_QUICK if context.is_quick else 1
+    with ProcessPoolExecutor(n) as pool:
+        found = [each for part in pool.map(fates, range(n), [n] * n, [every] * n) for each in part]
+    for kind in (*dict.fromkeys(kind for kind, _, _ in found), ALL):
+        counts = Counter(fate for of, fate, _ in found if kind in (of, ALL))
+        what = f"{counts.total()} mutants: {counts['told']} told, {counts['the same']} that cannot be"
+        row = Row(kind, what, counts["not told"], "not told")
+        yield replace(row, target="none", met=row.value == 0) if kind == ALL else row
+    for kind, fate, where in found:
+        if fate == "not told":
+            yield Row(kind, where, 1, "not told")
+
+
+MUTANTS_BENCHMARK = Benchmark(
+    "proof-mutants",
+    "Mutants of the verifier",
+    "The verifier with one small mistake: another comparison, constant or sign, a check left out, a condition that "
+    "always or never holds. Each mutant is asked what the verifier is: what its parts say, at which number each claim "
+    "is lost, and what it says of tampered files. Those that cannot be told are listed with their reasons in "
+    "`tests/planning/proof/mutants.py`.",
+    measure_mutants,
 )
