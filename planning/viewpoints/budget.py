@@ -39,9 +39,10 @@ MAX_CANDIDATES, FEWEST_CANDIDATES = 700, 100
 """Candidates whose routes are compared: their leg table takes some seconds. So few for each battery are, however late
 it is."""
 
-LOOKING_SHARE, CHOOSING_SHARE, TABLE_SHARE = 0.3, 0.3, 0.5
-"""Parts of the time left: how long candidates are looked at; of what is left then, how long some of them are chosen,
-and how long ways between these are looked for. The rest is for the search."""
+LOOKING_SHARE, CHOOSING_SHARE, LEGS_SHARE, WAYS_SHARE = 0.3, 0.3, 0.3, 0.3
+"""Parts of the time left each: how long candidates are looked at, how long some of them are chosen, and how long legs
+between these are looked at. So many are chosen as ways around can be found for in the last. The rest is for the
+search."""
 
 CHOICE_DEPTHS = (1, 2, 3)
 """Candidates are the greedy choices for covering each section once, then twice and so on: variety to route by."""
@@ -125,7 +126,7 @@ def views_within_budget(
     is_cut_short = stop()
 
     def n_in_time() -> int:
-        in_time = _n_routed_in_time(problem, free.views, aircraft, rules, TABLE_SHARE * remaining_s())
+        in_time = _n_routed_in_time(problem, free.views, aircraft, rules, WAYS_SHARE * remaining_s())
         return min(n_most, max(FEWEST_CANDIDATES * n_batteries, in_time))
 
     if error is None:
@@ -143,7 +144,8 @@ def views_within_budget(
         kept[choose_for_least_error(state, n_free, monitor, choosing)] = True
         free = keep(free, kept)
     pool = join_pools(Pool(locked, problem.model.elements(locked)), free)
-    times = flight_times(problem.roadmap, pool.views, aircraft, rules, monitor)
+    legs = _part_of(LEGS_SHARE, remaining_s, stop)
+    times = flight_times(problem.roadmap, pool.views, aircraft, rules, monitor, stop=legs)
     cover = CoverGain(pool.elements, weights)
     gain = cover if error is None else ErrorGain(error_state(error, pool.views))
     selection = solve_orienteering(
