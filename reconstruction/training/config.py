@@ -94,7 +94,8 @@ class Rates:
     means
         Share of the scene's size (half the cameras' and splats' extent) a step; falls to `means_last` of it.
     quats, scales, opacities, colours
-        Of the parameters as they are stored (logarithms, logits).
+        Of the parameters as they are stored (logarithms, logits). Colours three times as fast scored 0.1 to 0.3 dB more
+        on facades after 300 to 400 steps, and no more after 1000; all of them faster less.
     colour_details
         Of the bands of spherical harmonics above the first, as a share of `colours`.
     glass_geometry
