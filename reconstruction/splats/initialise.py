@@ -222,7 +222,8 @@ class InitialParameters:
     finest_px
         They are never closer than so many pixels of the photo that sees them nearest: finer ones cannot be told apart.
     coarser_around
-        How many times further apart they are away from the panels, which are what is looked at.
+        How many times further apart they are away from the panels, which are what is looked at. A third less on panes,
+        close together along their edges alone, scored 0.3 dB less on facades.
     width
         Standard deviation of a splat, of the distance to the next. At 0.6 an even grid of opacity 0.9 covers 93 to 97 %
         of what is behind it; wider ones smear the edges of panes.
