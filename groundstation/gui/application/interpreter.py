@@ -9,7 +9,7 @@ import importlib
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
@@ -155,43 +155,61 @@ class BackgroundImport(QObject):
 
     imported = Signal(str)
 
-    def __init__(self, modules: Sequence[str], parent: QObject | None = None) -> None:
+    def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._modules = tuple(modules)
+        self._waiting: list[str] = []
         self._done: list[str] = []
+        self._lock, self._is_importing = threading.Lock(), False
+        self._urgent = ""
         self._told = 0
         self._looked_s = time.perf_counter()
         self._window = threading.get_ident()
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._look)
 
-    def start(self) -> None:
-        """Begin."""
-        modules, done = self._modules, self._done
-
-        def work() -> None:
-            gives_way: Any = _GiveWay(self._is_busy)
-            sys.meta_path.insert(0, gives_way)
-            for module in modules:
-                # Whoever imports it again, in the window's thread, gets the error and can tell it.
-                with contextlib.suppress(Exception):
-                    importlib.import_module(module)
-                done.append(module)
-            sys.meta_path.remove(gives_way)
-
-        threading.Thread(target=work, name="import", daemon=True).start()
+    def add(self, *modules: str) -> None:
+        """Import these, too, after those that were asked for before: one at a time, for some need each other."""
+        with self._lock:
+            self._waiting += modules
+            is_new, self._is_importing = not self._is_importing, True
+        if is_new:
+            threading.Thread(target=self._import, name="import", daemon=True).start()
         self._timer.start(LOOK_MS)
 
+    def hurry(self, module: str) -> None:
+        """Import one before the others that are not begun, and without rests: the window has nothing else to do."""
+        self._urgent = module
+        with self._lock:
+            self._waiting.sort(key=lambda each: each != module)
+
+    def _import(self) -> None:
+        gives_way: Any = _GiveWay(self._is_busy)
+        sys.meta_path.insert(0, gives_way)
+        while (module := self._next()) is not None:
+            # Whoever imports it again, in the window's thread, gets the error and can tell it.
+            with contextlib.suppress(Exception):
+                importlib.import_module(module)
+            self._done.append(module)
+        sys.meta_path.remove(gives_way)
+
+    def _next(self) -> str | None:
+        with self._lock:
+            self._is_importing = bool(self._waiting)
+            return self._waiting.pop(0) if self._waiting else None
+
     def _is_busy(self) -> bool:
-        is_late = time.perf_counter() - self._looked_s > BUSY_S
+        is_late = not self._urgent and time.perf_counter() - self._looked_s > BUSY_S
         return is_late and not _waits_for_import(self._window)
 
     def _look(self) -> None:
         self._looked_s = time.perf_counter()
         while self._told < len(self._done):
+            module = self._done[self._told]
             self._told += 1
-            self.imported.emit(self._done[self._told - 1])
-        if self._told == len(self._modules):
+            if module == self._urgent:
+                self._urgent = ""
+            self.imported.emit(module)
+        if not self._is_importing and self._told == len(self._done):
             self._timer.stop()
 
 

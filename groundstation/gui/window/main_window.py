@@ -8,11 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QEvent, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QObject, Qt, QTimer, Signal
 from PySide6.QtGui import QAction, QCloseEvent, QKeyEvent, QShowEvent, QWhatsThisClickedEvent
 from PySide6.QtWidgets import (
     QAbstractButton,
     QHBoxLayout,
+    QLabel,
     QMainWindow,
     QScrollArea,
     QSplitter,
@@ -49,15 +50,21 @@ if TYPE_CHECKING:
 STEPS = frozenset(Step)
 
 MAKE_NEXT_MS = 500
-"""After a tab was shown, the next one is made, which takes about a tenth of a second."""
+"""After a tab was shown, the next one is made, which takes up to a fifth of a second."""
 
 TURN_MS = 10
 """Between two parts of it; without a pause Qt may do them all in one turn."""
+
+WANTS_TABS = (QEvent.Type.MouseButtonPress, QEvent.Type.KeyPress, QEvent.Type.TouchBegin)
+"""Somebody works with the window: the tabs behind the start page are imported, which take 0.2 GB and some seconds."""
 
 TABS_OF_ACTS = {Act(f"to-{spec.name}"): spec.name for spec in TABS}
 """Where each act leads that is nothing but a way to another tab."""
 
 SCENE_MODULE = "groundstation.gui.view3d.scene_view"
+
+PLAYER_MODULE = "groundstation.gui.camera_preview.plan_player"
+"""The 3-D view has its time slider, and makes it with itself: imported then, it took half of 0.16 s."""
 
 
 class MainWindow(QMainWindow):
@@ -82,7 +89,12 @@ class MainWindow(QMainWindow):
         self._begun_tabs: dict[str, Tab] = {}
         self._was_shown = False
         self._ready: set[str] = set()
+        self._coming: TabSpec | None = None
+        self._loading = BackgroundImport(parent=self)
+        self._loading.imported.connect(self._imported)
+        self._is_wanted = False
         self._manual: ManualWindow | None = None
+        self._takes_keyboard = False
         self._quick_buttons: list[QToolButton] = []
         self._ticks: dict[str, tuple[bool, Colours]] = {}
         self.shared_view = SharedView(context)
@@ -100,6 +112,8 @@ class MainWindow(QMainWindow):
         context.documentChanged.connect(self._leave_start)
         self._make_soon = QTimer(self, interval=MAKE_NEXT_MS, singleShot=True)
         self._make_soon.timeout.connect(self._make_next)
+        self._next_part = QTimer(self, interval=TURN_MS, singleShot=True)
+        self._next_part.timeout.connect(self._make_coming)
         self._show_steps()
 
     def _make_layout(self) -> None:
@@ -119,8 +133,11 @@ class MainWindow(QMainWindow):
         self._around = split((self._left, self._over_bottom), (SIDE_WIDTH_PX, beside), 1)
         for splitter in (self._view_and_right, self._over_bottom, self._around):
             splitter.setHandleWidth(6)
-        self._pages = CurrentStack()
+        self._pages, self._title_of_coming = CurrentStack(), QLabel()
+        self._title_of_coming.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._title_of_coming.setProperty("role", "muted")
         self._pages.addWidget(self._around)
+        self._pages.addWidget(self._title_of_coming)
         page = QWidget()
         layout = QVBoxLayout(page)
         layout.setContentsMargins(0, 0, 0, 0)
@@ -203,12 +220,25 @@ class MainWindow(QMainWindow):
         return self._begun_tabs[spec.name]
 
     def show_tab(self, name: str) -> None:
-        """Bring a tab to the front, and the keyboard to its first widget."""
+        """Bring a tab to the front, and the keyboard to its first widget, now; one that is not made yet is made."""
+        self.tab(name)
+        self.lead_to(name)
+
+    def lead_to(self, name: str) -> None:
+        """Bring a tab to the front, and the keyboard to its first widget, as soon as it is made."""
         self._bar.setCurrentIndex(self.tab_names().index(name))
         if self._shown is None:
             self._tab_chosen(self._bar.currentIndex())
-        first = first_in(self._tabs[name].left)
-        (self._bar if first is None else first).setFocus(Qt.FocusReason.ShortcutFocusReason)
+        self._takes_keyboard = True
+        if self._coming is None:
+            self._give_keyboard()
+
+    def _give_keyboard(self) -> None:
+        """To the first widget of the tab that came to the front, where somebody was led there."""
+        if self._takes_keyboard and self._shown is not None:
+            first = first_in(self._tabs[self._shown.name].left)
+            (self._bar if first is None else first).setFocus(Qt.FocusReason.ShortcutFocusReason)
+        self._takes_keyboard = False
 
     def shown_tab(self) -> str:
         """Name of the tab at the front."""
@@ -217,7 +247,7 @@ class MainWindow(QMainWindow):
     def take_step(self, act: Act) -> None:
         """Lead on: to another tab, or by doing something in the one that is shown."""
         if act in TABS_OF_ACTS:
-            self.show_tab(TABS_OF_ACTS[act])
+            self.lead_to(TABS_OF_ACTS[act])
         elif self._shown is not None:
             self._tabs[self._shown.name].take_step(act)
 
@@ -230,21 +260,50 @@ class MainWindow(QMainWindow):
             if following.module not in self._ready:
                 self._make_soon.start()
             elif following.name not in self._tabs:
-                # Each part, and its place, which takes half as long again, in a turn of its own.
-                is_known, page = following.name in self._begun_tabs, self._begun(following)
-                has_more = page.go_on() if isinstance(page, GradualTab) else not is_known
+                # Its place, which takes half as long again, in a turn of its own, too.
+                has_more = self._make_part(following)
                 QTimer.singleShot(TURN_MS, self, self._make_next if has_more else lambda: self.tab(following.name))
+
+    def _make_part(self, spec: TabSpec) -> bool:
+        """Make another part of a tab; whether there may be more."""
+        is_known, page = spec.name in self._begun_tabs, self._begun(spec)
+        return page.go_on() if isinstance(page, GradualTab) else not is_known
+
+    def _announce(self, spec: TabSpec) -> None:
+        """Show a tab's title while it is made, a part in each turn: the window answers meanwhile."""
+        self._coming = spec
+        self.next_step.hide()
+        self._title_of_coming.setText(self.tr("{0} ...").format(spec.shown_title()))
+        self._pages.setCurrentWidget(self._title_of_coming)
+        self._import_tabs()
+        self._next_part.start()
+
+    def _make_coming(self) -> None:
+        """Go on with the tab that was announced."""
+        spec = self._coming
+        if spec is None or self._bar.signalsBlocked():
+            return
+        if spec.name in self._tabs:
+            self._bring(spec)
+            return
+        if spec.module not in self._ready:
+            self._loading.hurry(spec.module)
+        elif not self._make_part(spec):
+            self.tab(spec.name)
+        self._next_part.start()
 
     def _leave_start(self, before: Document, after: Document) -> None:
         """Show a site that was opened from the start page; a window that has made room for another stays as it is."""
         is_new = after.site is not None and before.site is not after.site
+        if is_new:
+            self._import_tabs()
         if is_new and self.shown_tab() in ("", "start"):
             # In a turn of its own: the views have the site to take in now.
             QTimer.singleShot(0, self, self._show_site)
 
     def _show_site(self) -> None:
         if self.shown_tab() in ("", "start") and not self._bar.signalsBlocked():
-            self.show_tab("site")
+            self.lead_to("site")
 
     def _show_steps(self, *_changed: object) -> None:
         """Tick the steps that are behind, and say what the one that is shown leads to."""
@@ -273,7 +332,15 @@ class MainWindow(QMainWindow):
 
     def _tab_chosen(self, index: int) -> None:
         spec = TABS[index]
-        if spec is self._shown:
+        if self._shown is None or spec.name in self._tabs:
+            self._bring(spec)
+        else:
+            self._announce(spec)
+
+    def _bring(self, spec: TabSpec) -> None:
+        """Bring a tab to the front; back to it, where another one was announced."""
+        is_back, self._coming = self._coming is not None, None
+        if spec is self._shown and not is_back:
             return
         if self._shown is not None:
             self._tabs[self._shown.name].hidden()
@@ -296,6 +363,9 @@ class MainWindow(QMainWindow):
             for action in page.actions():
                 (self.addAction if name == spec.name else self.removeAction)(action)
         tab.shown()
+        if spec.name == "start" and not self._is_wanted:
+            self._watch_start(tab.left)
+        self._give_keyboard()
         self._make_soon.start()
         self.tabShown.emit(spec.name)
 
@@ -358,12 +428,26 @@ class MainWindow(QMainWindow):
         super().showEvent(event)
         if not self._was_shown:
             self._was_shown = True
-            modules = [spec.module for spec in TABS]
-            first = TABS[max(0, self._bar.currentIndex())].module
-            modules.sort(key=lambda module: module != first)
-            self._loading = BackgroundImport([*modules[:1], SCENE_MODULE, *modules[1:]], self)
-            self._loading.imported.connect(self._imported)
-            QTimer.singleShot(0, self._loading, self._loading.start)
+            first = TABS[max(0, self._bar.currentIndex())]
+            QTimer.singleShot(0, self, lambda: self._loading.add(first.module, PLAYER_MODULE, SCENE_MODULE))
+            if first.name != "start":
+                self._import_tabs()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+        """Import the other tabs once somebody works with the window: a start page that is only there is small."""
+        if event.type() in WANTS_TABS:
+            self._import_tabs()
+        return super().eventFilter(watched, event)
+
+    def _watch_start(self, page: QWidget) -> None:
+        """See presses on what leads on from the start page; all that the application hears would be too much."""
+        for widget in (self._bar, self.menuBar(), *page.findChildren(QAbstractButton)):
+            widget.installEventFilter(self)
+
+    def _import_tabs(self) -> None:
+        if not self._is_wanted:
+            self._is_wanted = True
+            QTimer.singleShot(0, self, lambda: self._loading.add(*(spec.module for spec in TABS)))
 
     def _imported(self, module: str) -> None:
         """Show the first tab, then the 3-D view, as they can be had."""

@@ -326,7 +326,7 @@ class Menus(QObject):
     def _go_menu(self, menu: QMenu) -> None:
         for number, spec in enumerate(TABS):
             name = spec.name
-            self._add(menu, spec.shown_title(), f"Ctrl+{number}", partial(self._window.show_tab, name))
+            self._add(menu, spec.shown_title(), f"Ctrl+{number}", partial(self._window.lead_to, name))
         menu.addSeparator()
         self._add(menu, self.tr("Next &step"), NEXT_STEP_KEY, self._window.next_step.take)
 

@@ -36,11 +36,24 @@ def test_other_threads_import_at_once(monkeypatch):
 def test_all_modules_are_told_of_in_order_and_python_searches_as_before(application):
     before, told = list(sys.meta_path), []
     names = ["colorsys", "no_such_module_at_all", "this_is_none_either"]
-    loading = BackgroundImport(names)
+    loading = BackgroundImport()
     loading.imported.connect(told.append)
-    loading.start()
+    loading.add(*names)
     turn_until(application, lambda: told == names)
-    assert sys.meta_path == before
+    loading.add("quopri")
+    turn_until(application, lambda: told == [*names, "quopri"])
+    turn_until(application, lambda: sys.meta_path == before)
+
+
+def test_what_is_wanted_now_is_imported_before_what_waits(application, modules_that_wait):
+    module, running, held = modules_that_wait
+    loading, told = BackgroundImport(), []
+    loading.imported.connect(told.append)
+    loading.add(module, "colorsys", "quopri")
+    assert running.wait(20.0)
+    loading.hurry("quopri")
+    held.set()
+    turn_until(application, lambda: told == [module, "quopri", "colorsys"])
 
 
 def test_others_import_while_the_thread_rests():

@@ -25,6 +25,7 @@ from planning.request import PlanRequest
 from tests.gui.driving import (
     PATIENCE_S,
     TurnGaps,
+    click_on,
     clicked,
     close_controller,
     press_in,
@@ -101,6 +102,42 @@ def test_every_tab_can_be_shown_and_fits_a_small_screen(application, controller)
         assert size.width() <= 1280, name
         assert size.height() <= 720, name
     assert controller.window.tab_names() == ("start", *Step)
+
+
+def click_tab(window, name):
+    bar = window.tab_bar()
+    click_on(window, bar, bar.tabRect(window.tab_names().index(name)).center())
+
+
+def test_a_tab_that_is_not_made_yet_shows_its_title_at_once_and_is_made_in_many_turns(application, controller):
+    window = controller.window
+    window._make_soon.stop()
+    assert not {"plan", "fly"} & set(window._tabs)
+    click_tab(window, "plan")
+    assert window._title_of_coming.isVisible()
+    assert window._title_of_coming.text() == "Plan ..."
+    assert window.shown_tab() == "start"
+    turns_s = []
+    while window.shown_tab() != "plan":
+        began_s = time.thread_time()
+        application.processEvents()
+        turns_s.append(time.thread_time() - began_s)
+    assert not window._title_of_coming.isVisible()
+    assert window.tab("plan").left.isVisible()
+    assert max(turns_s) < 0.5 * sum(turns_s), "no turn has most of the work"
+
+
+def test_who_goes_back_before_a_tab_is_made_is_back_at_once(application, controller):
+    window = controller.window
+    window._make_soon.stop()
+    click_tab(window, "fly")
+    click_tab(window, "start")
+    assert window.shown_tab() == "start"
+    assert window.tab("start").left.isVisible()
+    turn_until_idle(application, controller)
+    assert window.shown_tab() == "start"
+    click_tab(window, "fly")
+    turn_until(application, lambda: window.shown_tab() == "fly")
 
 
 @pytest.mark.slow
