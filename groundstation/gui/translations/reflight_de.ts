@@ -2979,6 +2979,10 @@ Scheiben: {2}, je {3} × {4}</translation>
 <context>
     <name>MainWindow</name>
     <message>
+        <source>{0} ...</source>
+        <translation>{0} ...</translation>
+    </message>
+    <message>
         <source>{0} (Ctrl+{1})</source>
         <translation>{0} (Strg+{1})</translation>
     </message>
@@ -3616,6 +3620,22 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Anhänge der Einträge lesen</translation>
     </message>
     <message>
+        <source>Write the records as tables</source>
+        <translation>Einträge als Tabellen schreiben</translation>
+    </message>
+    <message>
+        <source>{0} tables are written: {1}</source>
+        <translation>{0} Tabellen sind geschrieben: {1}</translation>
+    </message>
+    <message>
+        <source>Read tables of records</source>
+        <translation>Tabellen der Einträge einlesen</translation>
+    </message>
+    <message>
+        <source>The tables are read: {0} records are new or other.</source>
+        <translation>Die Tabellen sind gelesen: {0} Einträge sind neu oder anders.</translation>
+    </message>
+    <message>
         <source>The process that shows models has ended (exit status {0}); it starts anew.</source>
         <translation>Der Prozess, der Modelle zeigt, ist beendet (Status {0}); er startet neu.</translation>
     </message>
@@ -3653,6 +3673,18 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>Documents (*.pdf)</source>
         <translation>Dokumente (*.pdf)</translation>
+    </message>
+    <message>
+        <source>Write the records as tables</source>
+        <translation>Einträge als Tabellen schreiben</translation>
+    </message>
+    <message>
+        <source>{0} records</source>
+        <translation>{0} Einträge</translation>
+    </message>
+    <message>
+        <source>Folder of tables</source>
+        <translation>Ordner mit Tabellen</translation>
     </message>
     <message>
         <source>model</source>
@@ -6497,6 +6529,10 @@ Damit weiterarbeiten?</translation>
         <translation>Bericht als PDF ...</translation>
     </message>
     <message>
+        <source>Tables</source>
+        <translation>Tabellen</translation>
+    </message>
+    <message>
         <source>No panel is chosen. Click one in the picture, or in the list.</source>
         <translation>Keine Scheibe gewählt. Im Bild oder in der Liste eine anklicken.</translation>
     </message>
@@ -6535,6 +6571,18 @@ Damit weiterarbeiten?</translation>
     <message>
         <source>GlobalId</source>
         <translation>GlobalId</translation>
+    </message>
+    <message>
+        <source>Write tables for a spreadsheet ...</source>
+        <translation>Tabellen für ein Tabellenprogramm schreiben ...</translation>
+    </message>
+    <message>
+        <source>Read tables ...</source>
+        <translation>Tabellen einlesen ...</translation>
+    </message>
+    <message>
+        <source>All records of the model as CSV tables, to be filled in and read again</source>
+        <translation>Alle Einträge des Modells als CSV-Tabellen, die ausgefüllt und wieder eingelesen werden können</translation>
     </message>
     <message>
         <source>Take the last change of records back</source>
@@ -7551,6 +7599,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>  {0}  {1}  {2}</translation>
     </message>
     <message>
+        <source>% better fit</source>
+        <translation>% besser passend</translation>
+    </message>
+    <message>
         <source>% of the walls</source>
         <translation>% der Wände</translation>
     </message>
@@ -7751,6 +7803,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Mitsuba, {0} Strahlen</translation>
     </message>
     <message>
+        <source>Next sortie</source>
+        <translation>Nächster Einsatz</translation>
+    </message>
+    <message>
         <source>Open the model</source>
         <translation>Modell öffnen</translation>
     </message>
@@ -7781,6 +7837,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>Render photos</source>
         <translation>Fotos rendern</translation>
+    </message>
+    <message>
+        <source>Resume sortie</source>
+        <translation>Einsatz fortsetzen</translation>
     </message>
     <message>
         <source>Show the first</source>
@@ -7875,6 +7935,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Zum Standort</translation>
     </message>
     <message>
+        <source>Top-up flight</source>
+        <translation>Ergänzungsflug</translation>
+    </message>
+    <message>
         <source>Train</source>
         <translation>Trainieren</translation>
     </message>
@@ -7923,6 +7987,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein Grobmodell braucht mindestens {0} Fotos einer Kamera; von {1} Fotos sind {2} von der Kamera {3}; wählen Sie eine andere Kamera</translation>
     </message>
     <message>
+        <source>a coarse model needs at least {0} photos taken from different places, got {1}; {2}</source>
+        <translation>ein Grobmodell braucht mindestens {0} Fotos von verschiedenen Orten, es sind {1}; {2}</translation>
+    </message>
+    <message>
         <source>a coarse model needs at least {0} photos, got {1}</source>
         <translation>ein Grobmodell braucht mindestens {0} Fotos, es sind {1}</translation>
     </message>
@@ -7953,6 +8021,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>a focus of type {0} with {1} is not taken over; set it on the camera</source>
         <translation>ein Fokus der Art {0} mit {1} wird nicht übernommen; an der Kamera einstellen</translation>
+    </message>
+    <message>
+        <source>a folder without them</source>
+        <translation>ein Ordner ohne sie</translation>
     </message>
     <message>
         <source>a full battery</source>
@@ -8123,6 +8195,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>einer unbekannten Kamera</translation>
     </message>
     <message>
+        <source>another battery would bring {0} dB, more than the {1} to stop at: {2}</source>
+        <translation>ein weiterer Akku brächte {0} dB, mehr als die {1}, bei denen Schluss sein soll: {2}</translation>
+    </message>
+    <message>
         <source>another mission of this name is there; send it under another name, or allow to replace it</source>
         <translation>eine andere Mission dieses Namens ist dort; senden Sie sie unter einem anderen Namen, oder erlauben Sie das Ersetzen</translation>
     </message>
@@ -8289,6 +8365,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>certificate</source>
         <translation>Nachweis</translation>
+    </message>
+    <message>
+        <source>change the battery and fly the rest; or read the photos that there are</source>
+        <translation>Akku wechseln und den Rest fliegen; oder die vorhandenen Fotos einlesen</translation>
     </message>
     <message>
         <source>check the mission</source>
@@ -8587,6 +8667,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected a COLMAP model (cameras and images as .bin or .txt), found {0}; models are often in sparse/0</source>
         <translation>erwartet wird ein COLMAP-Modell (Kameras und Bilder als .bin oder .txt), gefunden {0}; Modelle liegen oft in sparse/0</translation>
+    </message>
+    <message>
+        <source>expected a COLMAP model (cameras and images as .bin or .txt); this folder has one in {0}: name that</source>
+        <translation>erwartet wird ein COLMAP-Modell (cameras und images als .bin oder .txt); dieser Ordner hat eines in {0}: nennen Sie dieses</translation>
     </message>
     <message>
         <source>expected a GlobalId, or a name in the column &apos;name&apos;, found neither</source>
@@ -8985,6 +9069,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wurde die erste Zeile {0}</translation>
     </message>
     <message>
+        <source>expected the folder of a COLMAP model (cameras and images as .bin or .txt), found a file; Metashape writes one by Export Cameras as Colmap, and nerfstudio&apos;s ns-process-data leaves one in colmap/sparse/0</source>
+        <translation>erwartet wird der Ordner eines COLMAP-Modells (cameras und images als .bin oder .txt), gefunden wurde eine Datei; Metashape schreibt einen mit Export Cameras als Colmap, und ns-process-data von nerfstudio hinterlässt einen in colmap/sparse/0</translation>
+    </message>
+    <message>
         <source>expected the folder of a model; &apos;records FOLDER make --objects SITE&apos; makes one for records alone</source>
         <translation>erwartet wird der Ordner eines Modells; &apos;records FOLDER make --objects SITE&apos; legt einen für Einträge allein an</translation>
     </message>
@@ -8999,6 +9087,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected the numbers of one camera, found {0}</source>
         <translation>erwartet: die Zahlen einer Kamera, gefunden: {0}</translation>
+    </message>
+    <message>
+        <source>expected the observations of &apos;{0}&apos;, or an empty line, found the next image; every image has two lines</source>
+        <translation>erwartet werden die Beobachtungen von &apos;{0}&apos; oder eine leere Zeile, gefunden wurde das nächste Bild; jedes Bild hat zwei Zeilen</translation>
     </message>
     <message>
         <source>expected the sample project or nothing there, found something else</source>
@@ -9217,6 +9309,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Log holen</translation>
     </message>
     <message>
+        <source>fewer photos fit into a battery than expected; ask for {0} batteries</source>
+        <translation>in einen Akku passen weniger Fotos als erwartet; verlangen Sie {0} Akkus</translation>
+    </message>
+    <message>
         <source>fewer than {0} per square kilometre, {1} in the whole area</source>
         <translation>weniger als {0} je Quadratkilometer, {1} im ganzen Gebiet</translation>
     </message>
@@ -9305,12 +9401,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>geflogen, bevor der Pilot handelt</translation>
     </message>
     <message>
+        <source>flown; {0}</source>
+        <translation>geflogen; {0}</translation>
+    </message>
+    <message>
         <source>fly at {0} m/s, or stop for each photo</source>
         <translation>mit {0} m/s fliegen oder für jedes Foto anhalten</translation>
     </message>
     <message>
         <source>fly it, first in simulation; or export it for your aircraft</source>
         <translation>fliegen, zuerst simuliert; oder für Ihr Fluggerät exportieren</translation>
+    </message>
+    <message>
+        <source>fly once more for what is missing; or read the photos that there are</source>
+        <translation>für das Fehlende noch einmal fliegen; oder die vorhandenen Fotos einlesen</translation>
+    </message>
+    <message>
+        <source>fly sortie {0}, with a full battery</source>
+        <translation>Einsatz {0} fliegen, mit vollem Akku</translation>
     </message>
     <message>
         <source>fly-aways</source>
@@ -9449,6 +9557,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>hat kein Gebäude „{0}“ zur Auswahl: Nur CityGML- und CityJSON-Dateien werden als mehrere Gebäude gelesen</translation>
     </message>
     <message>
+        <source>has no dataset.json, but a COLMAP model in {0}; &apos;prepare PHOTOS SITE --colmap&apos; makes a data set of it, and where there is no site, &apos;coarse PHOTOS&apos; makes one of the photos alone</source>
+        <translation>hat keine dataset.json, aber ein COLMAP-Modell in {0}; &apos;prepare PHOTOS SITE --colmap&apos; macht daraus einen Datensatz, und wo es keinen Standort gibt, macht &apos;coarse PHOTOS&apos; einen aus den Fotos allein</translation>
+    </message>
+    <message>
         <source>has no heights below the airspace of the site, which lies at {0}, {1} (tile {2}); give files that cover it</source>
         <translation>hat keine Höhen unter dem Luftraum des Standorts, der bei {0}, {1} liegt (Kachel {2}); Dateien angeben, die ihn abdecken</translation>
     </message>
@@ -9539,6 +9651,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>holds a COLMAP model already ({0}); name an empty folder</source>
         <translation>enthält schon ein COLMAP-Modell ({0}); einen leeren Ordner nennen</translation>
+    </message>
+    <message>
+        <source>holds no .jpg photo, but videos, the first {0}; fly again and take photos: videos do not say where each picture was taken</source>
+        <translation>enthält kein .jpg-Foto, aber Videos, zuerst {0}; fliegen Sie noch einmal und nehmen Sie Fotos auf: Videos sagen nicht, wo jedes Bild aufgenommen wurde</translation>
+    </message>
+    <message>
+        <source>holds no .jpg photo, but {0} of other kinds, the first {1}; save them as JPEG with all that the camera wrote into them</source>
+        <translation>enthält kein .jpg-Foto, aber {0} anderer Art, das erste {1}; speichern Sie sie als JPEG mit allem, was die Kamera hineingeschrieben hat</translation>
     </message>
     <message>
         <source>holds no position of the aircraft; a log of the whole flight with GNSS reception is needed</source>
@@ -9667,6 +9787,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>invalid choice: %(value)r (choose from %(choices)s)</source>
         <translation>ungültige Wahl: %(value)r (möglich sind %(choices)s)</translation>
+    </message>
+    <message>
+        <source>is a trained model; records belong to its objects, of which &apos;organise&apos; makes a folder</source>
+        <translation>ist ein trainiertes Modell; Einträge gehören zu seinen Objekten, von denen &apos;organise&apos; einen Ordner macht</translation>
     </message>
     <message>
         <source>is cut off; copy it again</source>
@@ -10073,6 +10197,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>gelandet</translation>
     </message>
     <message>
+        <source>landed early; {0}</source>
+        <translation>vorzeitig gelandet; {0}</translation>
+    </message>
+    <message>
         <source>landed; select it for its report</source>
         <translation>gelandet; wählen Sie es aus, um seinen Bericht zu sehen</translation>
     </message>
@@ -10083,6 +10211,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>lay a grid of panels on a facade, or find panels in photos</source>
         <translation>ein Raster von Scheiben auf eine Fassade legen, oder Scheiben in Fotos suchen</translation>
+    </message>
+    <message>
+        <source>lens found from the photos</source>
+        <translation>Objektiv aus den Fotos bestimmt</translation>
     </message>
     <message>
         <source>level ground</source>
@@ -10317,6 +10449,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>mehr als {0} und höchstens {1}</translation>
     </message>
     <message>
+        <source>more views would show nothing new or could not be flown</source>
+        <translation>mehr Aufnahmen würden nichts Neues zeigen oder wären nicht zu fliegen</translation>
+    </message>
+    <message>
         <source>more, where it still climbs or the wind carries it</source>
         <translation>mehr, wo es noch steigt oder der Wind es trägt</translation>
     </message>
@@ -10449,6 +10585,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>noch keine Flüge; simulierte: {0} (--simulated)</translation>
     </message>
     <message>
+        <source>no folder</source>
+        <translation>kein Ordner</translation>
+    </message>
+    <message>
         <source>no geo-zones are known here; add files of your authority: &apos;site zones SITE FILE&apos;</source>
         <translation>hier sind keine Geozonen bekannt; Dateien der Behörde hinzufügen: &apos;site zones SITE FILE&apos;</translation>
     </message>
@@ -10467,6 +10607,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>no method found a tour</source>
         <translation>kein Verfahren fand eine Rundtour</translation>
+    </message>
+    <message>
+        <source>no more batteries than {0} are taken without being asked for</source>
+        <translation>mehr als {0} Akkus werden nicht ungefragt genommen</translation>
     </message>
     <message>
         <source>no other times of this day spoil fewer photos</source>
@@ -10603,6 +10747,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>none of the {0} objects has its GlobalId in this file</source>
         <translation>keines der {0} Objekte hat seine GlobalId in dieser Datei</translation>
+    </message>
+    <message>
+        <source>none of the {0} photos can be used; the first: {1}</source>
+        <translation>keines der {0} Fotos kann verwendet werden; das erste: {1}</translation>
     </message>
     <message>
         <source>none of the {0} views to be scored has {1} pixels that lie whole on a panel; take larger or more photos</source>
@@ -10795,6 +10943,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>one that this ground station had not put there was removed, as the pilot said ({0})</source>
         <translation>einer, der nicht von dieser Bodenstation war, wurde auf Weisung des Piloten entfernt ({0})</translation>
+    </message>
+    <message>
+        <source>open a finished model, or train one first</source>
+        <translation>ein fertiges Modell öffnen, oder zuerst eines trainieren</translation>
     </message>
     <message>
         <source>open it</source>
@@ -11481,6 +11633,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Angabe des Piloten</translation>
     </message>
     <message>
+        <source>stay open, and the time did not last to find out why; allow it more time</source>
+        <translation>bleiben offen, und die Zeit reichte nicht, um den Grund zu finden; mehr Zeit geben</translation>
+    </message>
+    <message>
         <source>steps</source>
         <translation>Schritte</translation>
     </message>
@@ -11559,6 +11715,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>taken out</source>
         <translation>herausgenommen</translation>
+    </message>
+    <message>
+        <source>takes {0} of {1} batteries: {2}</source>
+        <translation>braucht {0} von {1} Akkus: {2}</translation>
     </message>
     <message>
         <source>taking panels from photos</source>
@@ -11873,6 +12033,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Höhen sind beschädigt ({0}); das Gelände neu anhängen</translation>
     </message>
     <message>
+        <source>the image &apos;{0}&apos; of the COLMAP model does not lie below the folder of photos, {1}; name the folder that holds all photos of the model</source>
+        <translation>das Bild &apos;{0}&apos; des COLMAP-Modells liegt nicht unter dem Ordner der Fotos, {1}; nennen Sie den Ordner, der alle Fotos des Modells enthält</translation>
+    </message>
+    <message>
         <source>the image name at byte {0} has no end; the file is damaged</source>
         <translation>der Bildname bei Byte {0} hat kein Ende; die Datei ist beschädigt</translation>
     </message>
@@ -11891,10 +12055,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the lens moves pixels by up to {0} px</source>
         <translation>das Objektiv verschiebt Pixel um bis zu {0} px</translation>
-    </message>
-    <message>
-        <source>the lens that the photos state does not fit their positions, which the model then misses by {0} m: it was found with the model, which meets them to {1} m</source>
-        <translation>das Objektiv, das die Fotos angeben, passt nicht zu ihren Positionen, die das Modell damit um {0} m verfehlt: Es wurde mit dem Modell gefunden, das sie auf {1} m trifft</translation>
     </message>
     <message>
         <source>the licence is missing; enter the words that the map&apos;s owner asks for, such as © OpenStreetMap contributors</source>
@@ -12531,10 +12691,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>train a model</source>
         <translation>ein Modell trainieren</translation>
-    </message>
-    <message>
-        <source>train a model first</source>
-        <translation>zuerst ein Modell trainieren</translation>
     </message>
     <message>
         <source>train a model of it</source>
@@ -15105,6 +15261,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Scheiben spiegeln etwas, das dem Standort fehlt: {0} x {1} m, {2} m hoch, {3} m vom Startplatz in Peilung {4}; der Flug hält Abstand von dem, was davon zu sehen ist, aber vor dem Flug hinsehen und es in den Standort eintragen</translation>
     </message>
     <message>
+        <source>the photos were taken over {0} days: what has changed since, light, plants and vehicles, does not fit together; if photos are left out, put each flight into a folder of its own</source>
+        <translation>die Fotos stammen aus {0} Tagen: was sich seitdem geändert hat, Licht, Pflanzen und Fahrzeuge, passt nicht zusammen; wenn Fotos wegbleiben, legen Sie jeden Flug in einen eigenen Ordner</translation>
+    </message>
+    <message>
         <source>the picture is damaged, or cannot be decoded; it was left out</source>
         <translation>das Bild ist beschädigt oder kann nicht gelesen werden; es wurde weggelassen</translation>
     </message>
@@ -15127,6 +15287,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the take-off lies outside of it, and the sortie leaves it by {0} m</source>
         <translation>der Startplatz liegt außerhalb, und der Flug verlässt ihn um {0} m</translation>
+    </message>
+    <message>
+        <source>the time did not last for more; allow it more time</source>
+        <translation>für mehr reichte die Zeit nicht; mehr Zeit geben</translation>
+    </message>
+    <message>
+        <source>the time did not last to compare as many viewpoints as usual; allow it more time</source>
+        <translation>die Zeit reichte nicht, um so viele Aufnahmepunkte zu vergleichen wie sonst; mehr Zeit geben</translation>
     </message>
     <message>
         <source>the tour does not fit {0}: expected each of its {1} points once, found {2}, missing {3}, unknown {4}</source>
@@ -15171,6 +15339,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the worker {0} could not take the scene; see its own log</source>
         <translation>der Worker {0} konnte die Szene nicht übernehmen; siehe dessen Log</translation>
+    </message>
+    <message>
+        <source>there are no records yet; make them with &apos;records FOLDER make&apos;</source>
+        <translation>es gibt noch keine Einträge; &apos;records FOLDER make&apos; legt sie an</translation>
     </message>
     <message>
         <source>there are no views to photograph; name a plan or flight that has some</source>
@@ -15453,6 +15625,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>mit dem Fokus auf {0} m reicht f/{1}</translation>
     </message>
     <message>
+        <source>with the lens that they state, photos fit each other to {0} px and their positions to {1} standard deviations, with the found one to {2} px and {3}</source>
+        <translation>mit dem angegebenen Objektiv passen die Fotos auf {0} px zueinander und auf {1} Standardabweichungen zu ihren Positionen, mit dem bestimmten auf {2} px und {3}</translation>
+    </message>
+    <message>
         <source>with the records the file would have {0} instances, {1} were expected; it is written in a way that is not understood; save it anew in a BIM program</source>
         <translation>mit den Einträgen hätte die Datei {0} Instanzen, erwartet wurden {1}; sie ist auf eine Weise geschrieben, die nicht verstanden wird; in einem BIM-Programm neu speichern</translation>
     </message>
@@ -15693,8 +15869,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} von {1} Ecken eines Umrisses sind keine Orte auf der Erde</translation>
     </message>
     <message>
+        <source>{0} of {1} photos are copies of others and are left out, the first {2}</source>
+        <translation>{0} von {1} Fotos sind Kopien anderer und bleiben weg, zuerst {2}</translation>
+    </message>
+    <message>
+        <source>{0} of {1} photos have another size than in the COLMAP model, by one factor in width and height; its cameras were scaled to them</source>
+        <translation>{0} von {1} Fotos haben eine andere Größe als im COLMAP-Modell, um einen Faktor in Breite und Höhe; seine Kameras wurden auf sie skaliert</translation>
+    </message>
+    <message>
         <source>{0} of {1} photos show a facade half in the sun with take-off at {2}</source>
         <translation>mit Start um {2} zeigen {0} von {1} Fotos eine Fassade, die zum Teil in der Sonne liegt</translation>
+    </message>
+    <message>
+        <source>{0} of {1} photos taken</source>
+        <translation>{0} von {1} Fotos gemacht</translation>
     </message>
     <message>
         <source>{0} of {1} views</source>
@@ -15849,6 +16037,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} view</source>
         <translation>{0} Aufnahme</translation>
+    </message>
+    <message>
+        <source>{0} views instead of the {1} asked for: {2}</source>
+        <translation>{0} Aufnahmen statt der verlangten {1}: {2}</translation>
     </message>
     <message>
         <source>{0} warning</source>
@@ -16251,10 +16443,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>deckt {0} % dessen ab, was höchstens möglich ist; gewünscht waren {1} %</translation>
     </message>
     <message>
-        <source>takes {0} of {1} batteries: more views would show nothing new or could not be flown</source>
-        <translation>braucht {0} von {1} Akkus: Mehr Aufnahmen würden nichts Neues zeigen oder wären nicht zu fliegen</translation>
-    </message>
-    <message>
         <source>viewpoint {0}</source>
         <translation>Aufnahmepunkt {0}</translation>
     </message>
@@ -16345,10 +16533,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>none of the viewpoints is locked; expected some with &quot;locked&quot;: true, which the Plan tab&apos;s lock sets</source>
         <translation>keiner der Aufnahmepunkte ist fixiert; erwartet wurden einige mit &quot;locked&quot;: true, was das Fixieren im Reiter Planung setzt</translation>
-    </message>
-    <message>
-        <source>{0} views instead of the {1} asked for: more would show nothing new or could not be flown</source>
-        <translation>{0} Aufnahmen statt der verlangten {1}: Mehr würden nichts Neues zeigen oder wären nicht zu fliegen</translation>
     </message>
     <message>
         <source>allow it more time</source>
@@ -20055,10 +20239,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Fotos werden aufbereitet</translation>
     </message>
     <message>
-        <source>none of the {0} photos can be read; the first: {1}</source>
-        <translation>keines der {0} Fotos ist lesbar; das erste: {1}</translation>
-    </message>
-    <message>
         <source>writing cameras and points</source>
         <translation>Kameras und Punkte werden geschrieben</translation>
     </message>
@@ -21267,6 +21447,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erst importieren: Standort &gt; Gebäude importieren</translation>
     </message>
     <message>
+        <source>has no dataset.json, but a COLMAP model in {0}; the Photos tab makes a data set of its photos</source>
+        <translation>hat keine dataset.json, aber ein COLMAP-Modell in {0}; der Reiter Fotos macht aus dessen Fotos einen Datensatz</translation>
+    </message>
+    <message>
         <source>has no dataset.json; choose the folder of a data set that is finished</source>
         <translation>hat keine dataset.json; den Ordner eines fertigen Datensatzes wählen</translation>
     </message>
@@ -22325,8 +22509,8 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Projekt öffnen ...</translation>
     </message>
     <message>
-        <source>A folder that Reflight has saved</source>
-        <translation>Ein Ordner, den Reflight gespeichert hat</translation>
+        <source>A folder that Reflight has saved, or a finished model</source>
+        <translation>Ein Ordner, den Reflight gespeichert hat, oder ein fertiges Modell</translation>
     </message>
     <message>
         <source>Building model ...</source>
