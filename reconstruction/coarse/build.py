@@ -11,8 +11,7 @@ import json
 import math
 import shutil
 import time
-from collections.abc import Hashable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -22,25 +21,15 @@ from numpy.typing import NDArray
 
 from planning.base.effects import Decision, EffectSetting, decide
 from planning.base.errors import InputError
-from planning.base.files import make_folder, open_input_file
+from planning.base.files import make_folder
 from planning.base.findings import Finding, Severity
-from planning.base.jit import n_threads
 from planning.base.json_file import read_json, write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
-from planning.geo.frames import Origin, Vec3
-from planning.photos.jpeg import PHOTO_FILE
-from planning.photos.places import (
-    PhotoHeights,
-    absolute_height_m,
-    photo_places,
-    receiver_heights_m,
-    takeoff_height_m,
-)
+from planning.geo.frames import Origin
 from planning.photos.record import PhotoMetadata
-from planning.site.records import MAX_DISTANCE_M
-from reconstruction.base.cameras import Intrinsics, PosedPhoto
+from reconstruction.base.cameras import PosedPhoto
 from reconstruction.coarse.buildings import Buildings, about_ground, about_walls, make_buildings, moved
 from reconstruction.coarse.cloud import (
     Cloud,
@@ -56,6 +45,7 @@ from reconstruction.coarse.cloud import (
     up_of_planes,
 )
 from reconstruction.coarse.ground_level import PICTURE_PX, level_of_ground
+from reconstruction.coarse.inputs import CoarseInputs, Stated, read_inputs, says_height, start_of
 from reconstruction.coarse.marks import agreeing_marks, factor_of_marks, is_in, meeting_place, scaled_marks
 from reconstruction.coarse.pairs import PairHint, PairParameters, choose_pairs, likeness_of
 from reconstruction.coarse.placing import (
@@ -87,9 +77,8 @@ from reconstruction.colmap.pycolmap_run import (
 )
 from reconstruction.colmap.receivers import Receiver, placed_by_receivers
 from reconstruction.colmap.record import ColmapModel
-from reconstruction.photos.decode import Scale, grey_picture, whole_content
-from reconstruction.photos.lens import CameraKind, camera_kind, lens_of, of_camera
-from reconstruction.photos.poses import DEFAULT_ACCURACY, measured_pose
+from reconstruction.photos.decode import Scale, grey_picture
+from reconstruction.photos.poses import DEFAULT_ACCURACY
 
 Array = NDArray[np.float64]
 
@@ -121,54 +110,6 @@ class CoarseParameters:
         for name in ("max_image_size_px", "max_features"):
             if getattr(self, name) < 1:
                 raise ValueError(f"{name}: expected at least 1, got {getattr(self, name)}")
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ControlPoint:
-    """A point whose place is known, and where photos show it.
-
-    Parameters
-    ----------
-    lat_deg, lon_deg, ellipsoid_height_m
-        WGS 84.
-    seen
-        Names of photos, and pixels in them.
-    """
-
-    name: str
-    lat_deg: float
-    lon_deg: float
-    ellipsoid_height_m: float
-    seen: tuple[tuple[str, float, float], ...]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Stated:
-    """What the user says beside the photos.
-
-    Parameters
-    ----------
-    lens
-        Of all photos, for one picture size; it is scaled to others.
-    control
-        Control points.
-    distances
-        Names of two photos, and the metres between where they were taken.
-    origin
-        Of the site, where the photos do not say where it is.
-    camera
-        Which of several cameras; None for the wide one.
-    dense
-        Whether walls without points are looked for in the photos.
-    """
-
-    lens: Intrinsics | None = None
-    control: tuple[ControlPoint, ...] = ()
-    distances: tuple[tuple[str, str, float], ...] = ()
-    origin: Origin | None = None
-    heights: PhotoHeights = "auto"
-    camera: CameraKind | None = None
-    dense: EffectSetting = "auto"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -206,19 +147,6 @@ class CoarseModel:
     findings: tuple[Finding, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Taken:
-    """Photos before they are matched: what each says, by its row."""
-
-    names: tuple[str, ...]
-    metadata: tuple[PhotoMetadata, ...]
-    lenses: tuple[Intrinsics | None, ...]
-    groups: tuple[Hashable, ...]
-    measured: tuple[Measured, ...]
-    origin: Origin | None
-    findings: tuple[Finding, ...]
-
-
 def build_coarse(
     folder: Path,
     photos: Sequence[PhotoMetadata],
@@ -245,11 +173,7 @@ def build_coarse(
     """
     stated, parameters = stated or Stated(), parameters or CoarseParameters()
     clock = _Clock()
-    photos, damaged = _whole(photos, monitor)
-    taken = _taken(folder, photos, stated)
-    if len(taken.names) < LEAST_PHOTOS:
-        raise InputError(_too_few(photos, taken, damaged))
-    taken = replace(taken, findings=(*damaged, *_days_apart(taken.metadata), *taken.findings))
+    taken = read_inputs(folder, photos, stated, monitor)
     colmap = load_colmap()
     _prepare_folder(kept, taken, parameters)
     run = _run(colmap, kept, folder, taken, parameters, monitor)
@@ -289,7 +213,7 @@ def build_coarse(
     known = taken.origin is not None or stated.origin is not None or bool(stated.control)
     findings = (*taken.findings, *lately, *placed.findings, *_left_out(left_out, len(taken.names)))
     findings += (*about_ground(buildings), *about_walls(buildings, forwards), *_about_place(known))
-    findings += about_height(origin) if _says_height(taken.metadata) else ()
+    findings += about_height(origin) if says_height(taken.metadata) else ()
     n = len(taken.names)
     return CoarseModel(
         posed,
@@ -308,37 +232,6 @@ def build_coarse(
     )
 
 
-def _too_few(photos: Sequence[PhotoMetadata], taken: _Taken, damaged: Sequence[Finding]) -> Any:
-    copies = [finding for finding in taken.findings if finding.code == COPIED]
-    n_others = len(photos) - len(taken.names) - sum(int(finding.value or 0) for finding in copies)
-    if damaged and n_others == 0:
-        return say(
-            "a coarse model needs at least {} photos, and {} of {} are whole; the first other: {}",
-            LEAST_PHOTOS,
-            len(photos),
-            len(photos) + len(damaged),
-            damaged[0].message,
-        )
-    if copies:
-        return say(
-            "a coarse model needs at least {} photos taken from different places, got {}; {}",
-            LEAST_PHOTOS,
-            len(taken.names),
-            copies[0].message,
-        )
-    if n_others == 0:
-        return say("a coarse model needs at least {} photos, got {}", LEAST_PHOTOS, len(taken.names))
-    kind = (camera_kind(taken.metadata[0]) or CameraKind.WIDE) if taken.metadata else CameraKind.WIDE
-    return say(
-        "a coarse model needs at least {} photos of one camera; of {} photos, {} are of the {} camera; choose "
-        "another camera",
-        LEAST_PHOTOS,
-        len(photos),
-        len(taken.names),
-        str(kind),
-    )
-
-
 class _Clock:
     """Seconds of steps, one after the other."""
 
@@ -353,201 +246,15 @@ class _Clock:
         self._last = now
 
 
-# What photos say.
-
-
-@dataclass(frozen=True, slots=True)
-class _Provisional:
-    """The frame until there is a site: its zero in the middle of the photos, at the height of take-off."""
-
-    name: str
-    origin: Origin
-    home_enu_m: Vec3 = (0.0, 0.0, 0.0)
-
-
-def _taken(folder: Path, photos: Sequence[PhotoMetadata], stated: Stated) -> _Taken:
-    of_kind, findings = of_camera(photos, stated.camera)
-    chosen, copies = _once(of_kind)
-    names = tuple(_name(photo, folder) for photo in chosen)
-    lenses = tuple(_lens(photo, stated.lens) for photo in chosen)
-    groups = tuple(
-        (photo.make, photo.model, photo.camera_serial, photo.width_px, photo.height_px, photo.focal_length_mm, lens)
-        for photo, lens in zip(chosen, lenses, strict=True)
-    )
-    origin, measured, lately = _measured(chosen, stated, str(folder))
-    n_unknown = sum(lens is None for lens in lenses)
-    if n_unknown:
-        text = say("{} of {} photos do not say their focal length: it is found with the model", n_unknown, len(names))
-        findings += (Finding(Severity.NOTE, "lens-found", text, "", float(n_unknown), None, "photos"),)
-    return _Taken(names, chosen, lenses, groups, measured, origin, (*copies, *findings, *lately))
-
-
-def _whole(photos: Sequence[PhotoMetadata], monitor: Monitor) -> tuple[tuple[PhotoMetadata, ...], tuple[Finding, ...]]:
-    """Photos all of whose pictures are there, and findings about the others: matches in half a picture mislead."""
-
-    def finding(photo: PhotoMetadata) -> Finding | None:
-        try:
-            whole_content(photo)
-        except InputError as error:
-            return Finding(Severity.WARNING, "photo-unreadable", str(error), str(photo.path))
-        return None
-
-    found: list[Finding | None] = []
-    with ThreadPoolExecutor(n_threads()) as pool:
-        for result in pool.map(finding, photos):
-            monitor.report(say("reading photos"), len(found), len(photos))
-            found.append(result)
-    kept = tuple(photo for photo, result in zip(photos, found, strict=True) if result is None)
-    return kept, tuple(result for result in found if result is not None)
-
-
-COPIED = "photos-copied"
-
-
-def _once(photos: Sequence[PhotoMetadata]) -> tuple[tuple[PhotoMetadata, ...], tuple[Finding, ...]]:
-    """Photos without copies of the same file under other names, which show nothing new."""
-    first: dict[tuple[int, str], PhotoMetadata] = {}
-    copies = []
-    for photo in photos:
-        content = photo.path.stat().st_size, _start_of(photo.path)
-        if first.setdefault(content, photo) is not photo:
-            copies.append(photo)
-    if not copies:
-        return tuple(photos), ()
-    text = say(
-        "{} of {} photos are copies of others and are left out, the first {}",
-        len(copies),
-        len(photos),
-        copies[0].path.name,
-    )
-    return tuple(first.values()), (Finding(Severity.WARNING, COPIED, text, "", float(len(copies)), 0.0, ""),)
-
-
-MOST_DAYS = 2.0
-"""Between the first photo and the last, from which on it is told: other light, leaves, cars and scaffolds."""
-
-
-def _days_apart(photos: Sequence[PhotoMetadata]) -> tuple[Finding, ...]:
-    times = [photo.taken_at.timestamp() for photo in photos if photo.taken_at is not None]
-    days = (max(times) - min(times)) / 86400.0 if times else 0.0
-    if days < MOST_DAYS:
-        return ()
-    text = say(
-        "the photos were taken over {:.0f} days: what has changed since, light, plants and vehicles, does not fit "
-        "together; if photos are left out, put each flight into a folder of its own",
-        days,
-    )
-    return (Finding(Severity.WARNING, "photos-days-apart", text, "", days, MOST_DAYS, "days"),)
-
-
-def _name(photo: PhotoMetadata, folder: Path) -> str:
-    return (photo.path.relative_to(folder) if photo.path.is_relative_to(folder) else photo.path).as_posix()
-
-
-def _lens(photo: PhotoMetadata, stated: Intrinsics | None) -> Intrinsics | None:
-    if stated is not None:
-        shape = (photo.width_px / photo.height_px) / (stated.width_px / stated.height_px)
-        if abs(math.log(shape)) > 0.01:
-            return None
-        return stated.scaled(photo.width_px, photo.height_px)
-    lens = lens_of(photo)
-    return None if lens is None else lens.intrinsics
-
-
-def _measured(
-    photos: Sequence[PhotoMetadata], stated: Stated, label: str
-) -> tuple[Origin | None, tuple[Measured, ...], tuple[Finding, ...]]:
-    """A provisional origin, and where each photo was taken and how it was turned, as far as it says so."""
-    placed = [
-        photo
-        for photo in photos
-        if photo.lat_deg is not None
-        and (absolute_height_m(photo) is not None or photo.height_above_takeoff_m is not None)
-    ]
-    if not placed:
-        if not stated.control:
-            return None, tuple(Measured() for _ in photos), ()
-        points = stated.control
-        origin = Origin(
-            float(np.median([point.lat_deg for point in points])),
-            float(np.median([point.lon_deg for point in points])),
-            float(np.median([point.ellipsoid_height_m for point in points])),
-        )
-        return origin, tuple(Measured() for _ in photos), ()
-    lat = float(np.median([photo.lat_deg for photo in placed if photo.lat_deg is not None]))
-    lon = float(np.median([photo.lon_deg for photo in placed if photo.lon_deg is not None]))
-    place = _Provisional(label, Origin(lat, lon, float(np.clip(_zero_m(placed), -900.0, 9000.0))))
-    near, findings = _near_each_other(placed, place)
-    where = photo_places(near, place, stated.heights, label)
-    n_turned = sum(_is_turned(photo) for photo in near)
-    found = {}
-    for photo, point, is_absolute in zip(near, where.points_enu_m, where.is_absolute.tolist(), strict=True):
-        pose = measured_pose(photo, place.origin, point, is_absolute, DEFAULT_ACCURACY)
-        if pose is None or pose.covariance is None:
-            continue
-        information = np.linalg.inv(pose.covariance[3:, 3:]) / max(1, n_turned) if _is_turned(photo) else None
-        turn = pose.cam_from_enu if _is_turned(photo) else None
-        found[photo.path] = Measured(pose.position_enu_m, pose.covariance[:3, :3], turn, information)
-    notes = tuple(finding for finding in where.findings if finding.code != "height-disagreement")
-    return place.origin, tuple(found.get(photo.path, Measured()) for photo in photos), (*findings, *notes)
-
-
-def _says_height(photos: Sequence[PhotoMetadata]) -> bool:
-    return any(photo.lat_deg is not None and absolute_height_m(photo) is not None for photo in photos)
-
-
-def _zero_m(photos: Sequence[PhotoMetadata]) -> float:
-    """Height of the provisional frame above the ellipsoid: take-off, so that both kinds of height give one place."""
-    takeoff_m = takeoff_height_m(photos)
-    if takeoff_m is not None:
-        return takeoff_m
-    heights_m = receiver_heights_m(photos)
-    is_known = np.isfinite(heights_m)
-    return float(np.median(heights_m[is_known])) if is_known.any() else 0.0
-
-
-def _near_each_other(photos: list[PhotoMetadata], place: _Provisional) -> tuple[list[PhotoMetadata], list[Finding]]:
-    """Photos whose receivers say that they are of the same place as most."""
-    lat, lon = (np.array([getattr(photo, name) for photo in photos], float) for name in ("lat_deg", "lon_deg"))
-    away_m = np.linalg.norm(enu_from_geodetic(place.origin, lat, lon, place.origin.ellipsoid_height_m), axis=1)
-    near = [photo for photo, far in zip(photos, away_m.tolist(), strict=True) if far <= MAX_DISTANCE_M]
-    if 2 * len(near) < len(photos):
-        raise InputError(
-            say(
-                "the photos were taken at places up to {:.0f} km apart; put those of one building into a folder of "
-                "their own",
-                2.0 * float(away_m.max()) / 1000.0,
-                place=place.name,
-            )
-        )
-    if len(near) == len(photos):
-        return near, []
-    n = len(photos) - len(near)
-    text = say(
-        "the positions of {} of {} photos are more than {:g} km from the others: they are not used",
-        n,
-        len(photos),
-        MAX_DISTANCE_M / 1000.0,
-    )
-    return near, [Finding(Severity.WARNING, "photos-elsewhere", text, "", float(n), 0.0, "photos")]
-
-
-def _is_turned(photo: PhotoMetadata) -> bool:
-    return photo.gimbal_heading_deg is not None and photo.gimbal_pitch_deg is not None
-
-
 # Features, pairs, matches, and the free model.
 
 SETTINGS, MAPPED = "settings.json", "mapped.json"
 
-START_BYTES = 1 << 16
-"""Of a photo's file, which tell it from others of the same size: its metadata, and the first of its picture."""
 
-
-def _prepare_folder(kept: Path, taken: _Taken, parameters: CoarseParameters) -> None:
+def _prepare_folder(kept: Path, taken: CoarseInputs, parameters: CoarseParameters) -> None:
     """Take away what is of other photos or other settings."""
     files = [
-        (name, photo.path.stat().st_size, _start_of(photo.path), repr(lens))
+        (name, photo.path.stat().st_size, start_of(photo.path), repr(lens))
         for name, photo, lens in zip(taken.names, taken.metadata, taken.lenses, strict=True)
     ]
     work = [parameters.max_image_size_px, parameters.max_features, parameters.least_contrast]
@@ -560,14 +267,8 @@ def _prepare_folder(kept: Path, taken: _Taken, parameters: CoarseParameters) -> 
     write_atomically(path, json.dumps({"sha256": digest}).encode())
 
 
-def _start_of(path: Path) -> str:
-    """Digest of a file's start: copying keeps it, where it does not keep the time."""
-    with open_input_file(path, PHOTO_FILE) as file:
-        return hashlib.sha256(file.read(START_BYTES)).hexdigest()
-
-
 def _run(
-    colmap: Any, kept: Path, folder: Path, taken: _Taken, parameters: CoarseParameters, monitor: Monitor
+    colmap: Any, kept: Path, folder: Path, taken: CoarseInputs, parameters: CoarseParameters, monitor: Monitor
 ) -> ColmapRun:
     started = [
         StartPhoto(name, group, lens, one.position_enu_m, one.covariance)
@@ -583,7 +284,7 @@ def _run(
     return ColmapRun(colmap, kept, folder, started, settings, monitor)
 
 
-def _pairs(run: ColmapRun, taken: _Taken, parameters: CoarseParameters, monitor: Monitor) -> list[Pair]:
+def _pairs(run: ColmapRun, taken: CoarseInputs, parameters: CoarseParameters, monitor: Monitor) -> list[Pair]:
     hints = [
         PairHint(
             name,
@@ -623,7 +324,7 @@ def _in_place(
     run: ColmapRun,
     free: Any | None,
     fixed: set[int],
-    taken: _Taken,
+    taken: CoarseInputs,
     stated: Stated,
     scratch: Path,
     parameters: CoarseParameters,
@@ -662,12 +363,12 @@ def _in_place(
     return placed, model, float(free.compute_mean_reprojection_error()), (*findings, *lately)
 
 
-def _measured_of(model: ColmapModel, taken: _Taken) -> list[Measured]:
+def _measured_of(model: ColmapModel, taken: CoarseInputs) -> list[Measured]:
     row_of = {name: row for row, name in enumerate(taken.names)}
     return [taken.measured[row_of[image.name]] for image in model.images.values()]
 
 
-def _receivers(taken: _Taken) -> dict[str, Receiver]:
+def _receivers(taken: CoarseInputs) -> dict[str, Receiver]:
     return {
         name: Receiver(one.position_enu_m, one.cam_from_enu, one.covariance)
         for name, one in zip(taken.names, taken.measured, strict=True)
@@ -676,7 +377,7 @@ def _receivers(taken: _Taken) -> dict[str, Receiver]:
 
 
 def _place(
-    model: ColmapModel, taken: _Taken, stated: Stated, parameters: CoarseParameters
+    model: ColmapModel, taken: CoarseInputs, stated: Stated, parameters: CoarseParameters
 ) -> tuple[Placed, tuple[Finding, ...]]:
     images = list(model.images.values())
     row_of = {name: row for row, name in enumerate(taken.names)}
@@ -758,7 +459,7 @@ LOOKS_DOWN_RAD = math.radians(20.0)
 
 
 def _above_ground(
-    model: ColmapModel, looked: _Taken | None, cloud: Cloud, centres: Array, rotations: Array, up: Up
+    model: ColmapModel, looked: CoarseInputs | None, cloud: Cloud, centres: Array, rotations: Array, up: Up
 ) -> Above | None:
     """The usual camera above the ground, or else above the lowest points; None where no point is below it.
 
@@ -783,7 +484,7 @@ LOWEST_PERCENT = 2.0
 
 def _with_dense(
     model: ColmapModel,
-    taken: _Taken,
+    taken: CoarseInputs,
     buildings: Buildings,
     looked_at: Cloud,
     cloud: Cloud,
@@ -811,7 +512,7 @@ def _seen_share(buildings: Buildings) -> float:
 
 def _ground(
     model: ColmapModel,
-    taken: _Taken,
+    taken: CoarseInputs,
     points: Array,
     all_points: Array,
     cell: float,
@@ -836,7 +537,7 @@ def _small(photo: PhotoMetadata, least_px: int = PICTURE_PX) -> NDArray[np.uint8
 
 
 def _control(
-    model: ColmapModel, taken: _Taken, stated: Stated, names: Sequence[str]
+    model: ColmapModel, taken: CoarseInputs, stated: Stated, names: Sequence[str]
 ) -> tuple[Control, tuple[str, ...], tuple[Finding, ...]]:
     """Control points and distances in the model: points by the rays of the photos that show them; their names."""
     row_of = {name: row for row, name in enumerate(names)}
@@ -890,7 +591,7 @@ def _control(
     return Control(np.array(points), enu, tuple(distances)), tuple(used), tuple(findings)
 
 
-def _origin(taken: _Taken, stated: Stated, buildings: Buildings, cloud: Cloud) -> tuple[Origin, Array]:
+def _origin(taken: CoarseInputs, stated: Stated, buildings: Buildings, cloud: Cloud) -> tuple[Origin, Array]:
     """The site's origin, on the ground below the building's middle, and the shift from the provisional frame."""
     corners = buildings.mesh.vertices_enu_m
     flat = corners[:, :2] if len(corners) else cloud.points[:, :2]
@@ -903,7 +604,7 @@ def _origin(taken: _Taken, stated: Stated, buildings: Buildings, cloud: Cloud) -
     return stated.origin or Origin(0.0, 0.0, 0.0), -foot
 
 
-def _posed(model: ColmapModel, placed: Placed, folder: Path, taken: _Taken) -> tuple[PosedPhoto, ...]:
+def _posed(model: ColmapModel, placed: Placed, folder: Path, taken: CoarseInputs) -> tuple[PosedPhoto, ...]:
     """Photos with the covariance that all have in common."""
     times = {name: photo.taken_at for name, photo in zip(taken.names, taken.metadata, strict=True)}
     residuals = placed.residuals_m[placed.is_used]

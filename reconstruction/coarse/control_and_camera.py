@@ -21,7 +21,7 @@ from planning.base.json_file import parse_json, parse_toml, to_record
 from planning.base.messages import say
 from planning.geo.crs import crs_conversion
 from reconstruction.base.cameras import Intrinsics
-from reconstruction.coarse.build import ControlPoint
+from reconstruction.coarse.inputs import ControlPoint
 from reconstruction.colmap.folder import read_cameras_text
 from reconstruction.colmap.record import intrinsics_of
 

@@ -26,8 +26,9 @@ from planning.site.importing.options import ImportOptions
 from planning.site.importing.placement import LocalFrame, Placement
 from planning.site.importing.source import SourceModel
 from planning.site.records import NoFlyZone, Obstacle, Site, SiteModel
-from reconstruction.coarse.build import CoarseModel, CoarseParameters, Stated, build_coarse, write_sparse
+from reconstruction.coarse.build import CoarseModel, CoarseParameters, build_coarse, write_sparse
 from reconstruction.coarse.control_and_camera import read_control_points, read_lens
+from reconstruction.coarse.inputs import Stated
 from reconstruction.coarse.parameters import CoarseRequest
 from reconstruction.coarse.placing import GUESSED
 from reconstruction.photos.lens import CameraKind

@@ -10,7 +10,7 @@ import pytest
 from groundstation.services.photos.coarse import coarse_files
 from planning.base.errors import InputError
 from planning.photos.record import PhotoMetadata
-from reconstruction.coarse.build import _days_apart
+from reconstruction.coarse.inputs import days_apart
 from reconstruction.coarse.parameters import CoarseRequest
 from tests.planning.photos.photo_writer import exif_part, gps_tags, jpeg, packet, save
 
@@ -76,4 +76,4 @@ def test_files_that_are_no_photos_are_named(tmp_path, name, said):
 def test_photos_of_flights_days_apart_are_told(days, is_told):
     begun = datetime(2026, 5, 1, 10)
     photos = [PhotoMetadata(Path("a.jpg"), 4, 3, taken_at=begun + timedelta(days=n)) for n in (0, 0, days)]
-    assert bool(_days_apart(photos)) is is_told
+    assert bool(days_apart(photos)) is is_told
