@@ -36,7 +36,7 @@ from reconstruction.tradeoff.flight_worth import (
 )
 from tests.benchmarks.harness import Benchmark, Context, Row
 
-N_SEEDS, N_UNSEEN, WIDTH_PX = {"planar": 3, "curved": 1}, 40, 128
+N_SEEDS, N_UNSEEN, WIDTH_PX = {"planar": 3, "curved": 3}, 40, 128
 """Seeds by scene: each takes ten minutes of two cores."""
 
 BEFORE = {n: f"batteries: {n} planned before" for n in (1, 2, 3)}
