@@ -29,13 +29,19 @@ def boxes(chart) -> dict[str, QRectF]:
     return {item.toPlainText(): item.mapRectToItem(plot.vb, item.textItem.boundingRect()) for item in shown}
 
 
+def settle(application) -> None:
+    """Sizes are handed down from the window to the scene and its axes, an event each."""
+    for _ in range(20):
+        application.processEvents()
+
+
 @pytest.mark.parametrize("points", [9.0, 14.4, 18.0])
 @pytest.mark.parametrize("size", [(1000, 300), (900, 150), (640, 110), (420, 80), (200, 60)])
 def test_names_of_lines_lie_beside_each_other_and_within_the_chart(application, chart, size, points):
     chart.setFont(QFont(chart.font().family(), points))
     chart.resize(*size)
     chart.show()
-    application.processEvents()
+    settle(application)
     room = chart.plots()[0].vb.rect().adjusted(-1.0, -1.0, 1.0, 1.0)
     found = boxes(chart)
     for name, box in found.items():
@@ -57,7 +63,7 @@ def test_titles_of_axes_are_as_large_as_the_windows_letters_and_smaller_where_th
     for height_px, has_room in ((300, True), (110, False)):
         chart.resize(900, height_px)
         chart.show()
-        application.processEvents()
+        settle(application)
         points = axis.label.font().pointSizeF()
         assert (points == 16.0) == has_room
         assert not axis.label.isVisible() or axis.label.boundingRect().width() <= axis.size().height() + 12.0
