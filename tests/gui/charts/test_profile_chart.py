@@ -4,9 +4,9 @@ import itertools
 
 import pytest
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QFont
 
 from groundstation.gui.charts.profile_chart import ProfileChart
+from groundstation.gui.widgets.theme import Theme, apply_theme
 from groundstation.services.mission.waypoints import HeightLimits, plan_profiles
 from tests.missions.plans import example_plan
 
@@ -20,6 +20,7 @@ def chart(application):
     chart.set_curves(plan_profiles(example_plan()), LIMITS)
     yield chart
     chart.close()
+    apply_theme(application, Theme.LIGHT)
 
 
 def boxes(chart) -> dict[str, QRectF]:
@@ -38,7 +39,7 @@ def settle(application) -> None:
 @pytest.mark.parametrize("points", [9.0, 14.4, 18.0])
 @pytest.mark.parametrize("size", [(1000, 300), (900, 150), (640, 110), (420, 80), (200, 60)])
 def test_names_of_lines_lie_beside_each_other_and_within_the_chart(application, chart, size, points):
-    chart.setFont(QFont(chart.font().family(), points))
+    apply_theme(application, Theme.LIGHT, points / 10.0)
     chart.resize(*size)
     chart.show()
     settle(application)
@@ -58,7 +59,7 @@ def test_names_of_lines_lie_beside_each_other_and_within_the_chart(application, 
 
 
 def test_titles_of_axes_are_as_large_as_the_windows_letters_and_smaller_where_the_chart_is_low(application, chart):
-    chart.setFont(QFont(chart.font().family(), 16.0))
+    apply_theme(application, Theme.LIGHT, 1.6)
     axis = chart.plots()[0].getAxis("left")
     for height_px, has_room in ((300, True), (110, False)):
         chart.resize(900, height_px)
