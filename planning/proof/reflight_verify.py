@@ -516,7 +516,7 @@ class Case:
 
     def coverage(self) -> str:
         stated, seen = get(self.plan, "coverage", dict), get(self.proof, "seen", list)
-        total, covered = len(self.panes) * self.n, number(stated, "covered")
+        total, covered = len(self.panes) * self.n, number(stated, "covered", 0.0)
         demand(number(stated, "total") == total, f"there are {total} sections, the plan states another number", FALSE)
         views = [(e, place_in(k, len(self.views), "seen")) for e, k in enumerate(seen) if k != -1.0]
         found = sum([self.covers(self.views[view], element) for element, view in views])

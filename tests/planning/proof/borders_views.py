@@ -248,6 +248,10 @@ def _of_witnesses(probe: Probe) -> Iterator[Any]:
     for bound in (-1.0, 0.0, 0.5, float(len(case.panes) * case.n) - 0.5):
         case.plan["coverage"]["reachable_upper_bound"] = bound
         yield probe.said(case.reachable)
+    for covered in (-1.0, nextafter(0.0, -inf), 0.0, nextafter(0.0, inf)):
+        case.plan["coverage"]["covered"] = covered
+        yield probe.said(case.coverage)
+    case.plan["coverage"]["covered"] = float(probe.plan["coverage"]["covered"])
     for seen in ([], probe.proof["seen"][:-1], [*probe.proof["seen"], -1.0], [*probe.proof["seen"], 0.0]):
         case.proof["seen"] = [float(k) for k in seen]
         yield probe.said(case.coverage)

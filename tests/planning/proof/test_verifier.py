@@ -123,6 +123,10 @@ def more_covered(plan: dict[str, Any]) -> None:
     plan["coverage"]["covered"] += 1
 
 
+def covered_below_zero(plan: dict[str, Any]) -> None:
+    plan["coverage"]["covered"] = -1
+
+
 def less_reachable(plan: dict[str, Any]) -> None:
     plan["coverage"]["reachable_upper_bound"] -= 1
 
@@ -139,6 +143,7 @@ def less_reachable(plan: dict[str, Any]) -> None:
         (hurried, "battery"),
         (together, "apart"),
         (more_covered, "coverage"),
+        (covered_below_zero, "coverage"),
         (less_reachable, "reachable"),
     ],
 )
