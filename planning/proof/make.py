@@ -50,8 +50,6 @@ RETURN_SHARES = (1.0, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5)
 """Parts of the minimum distance that returns are tried to keep, the largest first."""
 
 SECTIONS_PER_CHUNK = 16
-TRIED_VIEWS = 4
-"""Views of one section that are tried for a free line of sight."""
 
 
 def proof_path(plan_path: Path) -> Path:
@@ -202,7 +200,7 @@ class _Maker:
         sights: list[list[int]] = [[] for _ in range(n_elements)] if case.occlusion == "on" else []
         elements, starts, views = _best_views(case)
         places = np.array([place for _, place, _, _ in case.views]).reshape(-1, 3)
-        for k in range(TRIED_VIEWS):
+        for k in range(int(np.diff(starts).max(initial=0))):
             waiting = np.flatnonzero((seen[elements] < 0) & (starts[:-1] + k < starts[1:]))
             tried = views[starts[waiting] + k]
             if case.occlusion == "off":
