@@ -30,7 +30,7 @@ def ways_of(name: str) -> RoadmapPaths:
 @pytest.mark.slow
 def test_ways_keep_every_distance_and_are_those_of_a_table_of_the_same_places() -> None:
     paths, model = ways_of("kiosk"), kiosk()
-    places = [HOME, *(tuple(stop) for stop in allowed_stops(model, 8, height_m=5.0).tolist())]
+    places = [HOME, *(tuple(stop) for stop in allowed_stops(model, 8, height_m=6.0).tolist())]
     pairs = [(a, b) for a, b in itertools.permutations(range(len(places)), 2) if b != 0]
     found = paths.between([(places[a], places[b]) for a, b in pairs])
     triangles, n_around = solid_triangles(model), 0
