@@ -397,7 +397,12 @@ def flight_day(options: argparse.Namespace) -> FlightDay:
 def add_pose_arguments(parser: Any) -> None:
     """Add `--colmap`, `--refine` and what belongs to them, and `--heights`."""
     source = parser.add_mutually_exclusive_group()
-    source.add_argument("--colmap", type=Path, metavar="FOLDER", help="COLMAP model of the photos, for better poses")
+    source.add_argument(
+        "--colmap",
+        type=Path,
+        metavar="FOLDER",
+        help="COLMAP model (or transforms.json) of the photos, for better poses",
+    )
     source.add_argument(
         "--refine",
         action="store_true",

@@ -43,6 +43,7 @@ from reconstruction.coarse.cloud import (
     turn_upright,
     up_of_cameras,
     up_of_planes,
+    upright_axes,
 )
 from reconstruction.coarse.ground_level import PICTURE_PX, level_of_ground
 from reconstruction.coarse.inputs import CoarseInputs, Stated, read_inputs, says_height, start_of
@@ -430,7 +431,7 @@ def _up(
         mean = np.median(told, axis=0)
         start = Up(mean / np.linalg.norm(mean), math.radians(DEFAULT_ACCURACY.tilt_deg))
     else:
-        axes = [_upright_axes(photo) for photo in photos]
+        axes = [upright_axes(photo) for photo in photos]
         rights = np.array([rotation.T @ right for rotation, (right, _) in zip(rotations, axes, strict=True)])
         downs = np.array([rotation.T @ down for rotation, (_, down) in zip(rotations, axes, strict=True)])
         start = up_of_cameras(rights, downs)
@@ -443,15 +444,6 @@ def _up(
         cloud.points[rows], cloud.towards[rows], tolerance, 12, max(20, len(rows) // 50), parameters.seed
     )
     return up_of_planes(start, planes)
-
-
-TURNED = {3: (-1.0, 0.0, 0.0, -1.0), 6: (0.0, -1.0, 1.0, 0.0), 8: (0.0, 1.0, -1.0, 0.0)}
-"""By EXIF's orientation: the upright picture's right and down axes in the stored picture's, x and y each."""
-
-
-def _upright_axes(photo: PhotoMetadata) -> tuple[Array, Array]:
-    a, b, c, d = TURNED.get(photo.orientation or 1, (1.0, 0.0, 0.0, 1.0))
-    return np.array([a, b, 0.0]), np.array([c, d, 0.0])
 
 
 LOOKS_DOWN_RAD = math.radians(20.0)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from planning.photos.record import PhotoMetadata
 from reconstruction.colmap.record import ColmapModel, intrinsics_of
 
 Array = NDArray[np.float64]
@@ -304,6 +305,16 @@ class Up:
     direction: Array
     sigma_rad: float
     n_walls: int = 0
+
+
+TURNED = {3: (-1.0, 0.0, 0.0, -1.0), 6: (0.0, -1.0, 1.0, 0.0), 8: (0.0, 1.0, -1.0, 0.0)}
+"""By EXIF's orientation: the upright picture's right and down axes in the stored picture's, x and y each."""
+
+
+def upright_axes(photo: PhotoMetadata | None) -> tuple[Array, Array]:
+    """Right and down of the upright picture, camera axes, shape (3,) each; None: it is stored upright."""
+    a, b, c, d = TURNED.get((None if photo is None else photo.orientation) or 1, (1.0, 0.0, 0.0, 1.0))
+    return np.array([a, b, 0.0]), np.array([c, d, 0.0])
 
 
 def up_of_cameras(rights: Array, downs: Array) -> Up:

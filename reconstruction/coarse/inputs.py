@@ -188,7 +188,7 @@ def _too_few(
 
 
 @dataclass(frozen=True, slots=True)
-class _Provisional:
+class ProvisionalPlace:
     """The frame until there is a site: its zero in the middle of the photos, at the height of take-off."""
 
     name: str
@@ -270,13 +270,9 @@ def _measured(
     photos: Sequence[PhotoMetadata], stated: Stated, label: str
 ) -> tuple[Origin | None, tuple[Measured, ...], tuple[Finding, ...]]:
     """A provisional origin, and where each photo was taken and how it was turned, as far as it says so."""
-    placed = [
-        photo
-        for photo in photos
-        if photo.lat_deg is not None
-        and (absolute_height_m(photo) is not None or photo.height_above_takeoff_m is not None)
-    ]
-    if not placed:
+    placed = _placed(photos)
+    place = provisional_place(placed, label)
+    if place is None:
         if not stated.control:
             return None, tuple(Measured() for _ in photos), ()
         points = stated.control
@@ -286,9 +282,6 @@ def _measured(
             float(np.median([point.ellipsoid_height_m for point in points])),
         )
         return origin, tuple(Measured() for _ in photos), ()
-    lat = float(np.median([photo.lat_deg for photo in placed if photo.lat_deg is not None]))
-    lon = float(np.median([photo.lon_deg for photo in placed if photo.lon_deg is not None]))
-    place = _Provisional(label, Origin(lat, lon, float(np.clip(_zero_m(placed), -900.0, 9000.0))))
     near, findings = _near_each_other(placed, place)
     where = photo_places(near, place, stated.heights, label)
     n_turned = sum(_is_turned(photo) for photo in near)
@@ -302,6 +295,25 @@ def _measured(
         found[photo.path] = Measured(pose.position_enu_m, pose.covariance[:3, :3], turn, information)
     notes = tuple(finding for finding in where.findings if finding.code != "height-disagreement")
     return place.origin, tuple(found.get(photo.path, Measured()) for photo in photos), (*findings, *notes)
+
+
+def _placed(photos: Sequence[PhotoMetadata]) -> list[PhotoMetadata]:
+    return [
+        photo
+        for photo in photos
+        if photo.lat_deg is not None
+        and (absolute_height_m(photo) is not None or photo.height_above_takeoff_m is not None)
+    ]
+
+
+def provisional_place(photos: Sequence[PhotoMetadata], name: str) -> ProvisionalPlace | None:
+    """A frame for photos that no site is known of; None where none says its place and a height."""
+    placed = _placed(photos)
+    if not placed:
+        return None
+    lat = float(np.median([photo.lat_deg for photo in placed if photo.lat_deg is not None]))
+    lon = float(np.median([photo.lon_deg for photo in placed if photo.lon_deg is not None]))
+    return ProvisionalPlace(name, Origin(lat, lon, float(np.clip(_zero_m(placed), -900.0, 9000.0))))
 
 
 def says_height(photos: Sequence[PhotoMetadata]) -> bool:
@@ -319,7 +331,7 @@ def _zero_m(photos: Sequence[PhotoMetadata]) -> float:
     return float(np.median(heights_m[is_known])) if is_known.any() else 0.0
 
 
-def _near_each_other(photos: list[PhotoMetadata], place: _Provisional) -> tuple[list[PhotoMetadata], list[Finding]]:
+def _near_each_other(photos: list[PhotoMetadata], place: ProvisionalPlace) -> tuple[list[PhotoMetadata], list[Finding]]:
     """Photos whose receivers say that they are of the same place as most."""
     lat, lon = (np.array([getattr(photo, name) for photo in photos], float) for name in ("lat_deg", "lon_deg"))
     away_m = np.linalg.norm(enu_from_geodetic(place.origin, lat, lon, place.origin.ellipsoid_height_m), axis=1)

@@ -9,8 +9,9 @@ are known; what nothing says is said.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -23,8 +24,11 @@ from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from planning.geo.frames import Origin
 from planning.geo.geoid import amsl_from_ellipsoid_m
-from reconstruction.coarse.cloud import Up, turn_upright
-from reconstruction.colmap.georeference import MAD_TO_SIGMA, Similarity, are_on_a_line, fit_robustly
+from planning.photos.record import PhotoMetadata
+from reconstruction.base.cameras import PosedPhoto
+from reconstruction.coarse.cloud import Up, turn_upright, up_of_cameras, upright_axes
+from reconstruction.colmap.georeference import MAD_TO_SIGMA, Similarity, are_on_a_line, fit_robustly, posed_photos
+from reconstruction.colmap.record import ColmapModel
 
 Array = NDArray[np.float64]
 
@@ -541,3 +545,97 @@ def about_positions(placed: Placed, measured: Sequence[Measured]) -> tuple[Findi
         times,
     )
     return (Finding(Severity.WARNING, "positions-missed", text, "", _median_off_m(placed), None, "m"),)
+
+
+# A model of which nothing is known but itself: of other programs, for splats without a site.
+
+UPRIGHT_DEG = 10.0
+"""A model that stands so nearly upright is left as it is: cameras tell what is up no better."""
+
+NEAREST, FARTHEST = 3.0, 300.0
+"""From cameras to what they show, in units of a model that are taken for metres: splats, and their distance from
+cameras, are limited in metres."""
+
+FAR_OFF = 1000.0
+"""Units from zero, from which on a model is moved there: positions of splats are stored to seven digits."""
+
+N_LOOKED_AT, N_POINTS = 64, 2000
+"""Cameras and points, evenly chosen, that tell how far cameras are from what they show."""
+
+
+def in_own_frame(model: ColmapModel, metadata: Mapping[str, PhotoMetadata]) -> tuple[Similarity, tuple[Finding, ...]]:
+    """A frame for a model that nothing else is known of: its own, turned upright, with units that can be metres.
+
+    It is turned where its cameras say that it lies on its side, scaled by a power of ten where its cameras are too near
+    to what they show or too far off, and moved by whole units where it is far from zero.
+
+    Parameters
+    ----------
+    metadata
+        Of its photos, by name, as far as it is known: which pictures are stored turned.
+    """
+    photos = posed_photos(model, Similarity.identity(), Path())
+    axes = []
+    for photo in photos:
+        stored, lens = metadata.get(photo.name), photo.intrinsics
+        is_as_stored = stored is not None and (stored.width_px < stored.height_px) == (lens.width_px < lens.height_px)
+        axes.append(upright_axes(stored if is_as_stored else None))
+    turns = [photo.pose.cam_from_enu.T for photo in photos]
+    rights = np.array([turn @ right for turn, (right, _) in zip(turns, axes, strict=True)])
+    downs = np.array([turn @ down for turn, (_, down) in zip(turns, axes, strict=True)])
+    up = up_of_cameras(rights, downs).direction
+    tilt_deg = math.degrees(math.acos(float(np.clip(up[2], -1.0, 1.0))))
+    rotation = turn_upright(up) if tilt_deg > UPRIGHT_DEG else np.eye(3)
+    away = usual_distance(photos, model.points.xyz)
+    scale = 1.0
+    if not NEAREST <= away < FARTHEST:
+        scale = 10.0 ** math.ceil(math.log10(NEAREST / away))
+    middle = scale * rotation @ np.median([photo.pose.position_enu_m for photo in photos], axis=0)
+    shift = -np.round(middle) if np.abs(middle).max() > FAR_OFF else np.zeros(3)
+    return Similarity(scale, rotation, shift), _of_own_frame(scale, tilt_deg, shift)
+
+
+def _of_own_frame(scale: float, tilt_deg: float, shift: Array) -> tuple[Finding, ...]:
+    text = say(
+        "nothing says where on earth the photos were taken, or how large what they show is: the frame is that of their "
+        "model, and one unit of it counts as {:g} m",
+        scale,
+    )
+    findings = [Finding(Severity.NOTE, "frame-of-model", text, "", scale, None, "m")]
+    if tilt_deg > UPRIGHT_DEG:
+        text = say("the model was turned by {:.0f} degrees, so that its cameras stand upright", tilt_deg)
+        findings.append(Finding(Severity.NOTE, "model-turned", text, "", tilt_deg, None, "deg"))
+    if shift.any():
+        text = say("the model was moved by {} m, which brings it near zero", tuple(shift.tolist()))
+        findings.append(Finding(Severity.NOTE, "model-moved", text, "", float(np.linalg.norm(shift)), None, "m"))
+    return tuple(findings)
+
+
+def usual_distance(photos: Sequence[PosedPhoto], points: Array) -> float:
+    """From cameras to what they show: to points, shape (n, 3), or else to where most of them look.
+
+    Where there are neither, as far as cameras are spread, and 1 for a single one.
+    """
+    chosen = [photos[row] for row in np.unique(np.linspace(0, len(photos) - 1, N_LOOKED_AT).round().astype(int))]
+    some = points[:: max(1, len(points) // N_POINTS)]
+    found = []
+    for photo in chosen:
+        seen = some[photo.sees(some)] if len(some) else some
+        if len(seen):
+            found.append(float(np.median(np.linalg.norm(seen - photo.pose.position_enu_m, axis=1))))
+    if found and np.median(found) > 0.0:
+        return float(np.median(found))
+    centres = np.array([photo.pose.position_enu_m for photo in chosen])
+    ahead = np.array([photo.pose.forward_enu for photo in chosen])
+    across = np.eye(3) - ahead[:, :, None] * ahead[:, None, :]
+    normal = across.sum(axis=0)
+    if len(chosen) > 1 and np.linalg.cond(normal) < MOST_PARALLEL:
+        middle = np.linalg.solve(normal, np.einsum("nij,nj->i", across, centres))
+        depths = ((middle - centres) * ahead).sum(axis=1)
+        if np.median(depths) > 0.0:
+            return float(np.median(depths))
+    return _spread(centres) or 1.0
+
+
+MOST_PARALLEL = 1e3
+"""Condition of the place where cameras look, beyond which their axes are parallel, and there is none."""

@@ -28,6 +28,7 @@ from planning.geo.mesh import join, write_mesh
 from planning.geo.ray_casting import RayCaster
 from planning.site.records import SiteModel, panel_corners
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
+from reconstruction.colmap.georeference import Similarity
 from reconstruction.dataset.layers import IN_FRONT_M, Scene, draw_layers, facing, normals_to_16_bit, straightened
 from reconstruction.dataset.records import ColouredPoints, start_points, write_records
 from reconstruction.dataset.refined_mesh import RefineParameters, grown_corners, refine_mesh
@@ -181,6 +182,7 @@ def prepare(
     parameters: PrepareParameters | None = None,
     monitor: Monitor = QUIET,
     cloud: Array | None = None,
+    enu_from_model: Similarity | None = None,
 ) -> PreparedData:
     """Write the data set of a site's photos.
 
@@ -192,6 +194,8 @@ def prepare(
         The site with its panels; its building mesh is the coarse model.
     cloud
         Points that are known beside the mesh, such as a COLMAP model's: splats start from them, too.
+    enu_from_model
+        What the photos' model was moved by, where nothing but it says what the frame is; the data set tells it.
     folder
         That does not exist yet, or is empty. What was written is taken away again if this fails or is cancelled.
 
@@ -205,7 +209,9 @@ def prepare(
         raise InputError(say("there are no photos with a pose to prepare"))
     is_new_folder = _empty(folder)
     try:
-        prepared = _prepare(photos, model, panel_corners(model.site), folder, parameters, monitor, cloud)
+        prepared = _prepare(
+            photos, model, panel_corners(model.site), folder, parameters, monitor, cloud, enu_from_model
+        )
     except BaseException:
         _clear(folder)
         if is_new_folder:
@@ -223,6 +229,7 @@ def _prepare(
     parameters: PrepareParameters,
     monitor: Monitor,
     cloud: Array | None,
+    enu_from_model: Similarity | None,
 ) -> PreparedData:
     refined = refine_mesh(model.building, corners, parameters.refine, monitor)
     surroundings = RayCaster(join([refined.mesh, *model.obstacles]))
@@ -231,7 +238,8 @@ def _prepare(
     refined_caster = RayCaster(refined.mesh)
     scene = Scene(corners, grown_corners(model.site.facades), refined_caster, surroundings if hidden.on else None)
     points = start_points(refined.mesh, parameters.n_points, parameters.seed, cloud)
-    write_mesh(folder / "refined.ply", refined.mesh)
+    if len(refined.mesh.triangles):
+        write_mesh(folder / "refined.ply", refined.mesh)
     kept: list[PosedPhoto] = []
     findings: list[Finding] = []
     workers = max(1, n_threads())
@@ -249,7 +257,7 @@ def _prepare(
     if not kept:
         raise InputError(say("none of the {} photos can be used; the first: {}", len(photos), findings[0].message))
     monitor.report(say("writing cameras and points"), 0, 1)
-    write_records(folder, kept, model.site, points, (bent, hidden), parameters.normal_step)
+    write_records(folder, kept, model.site, points, (bent, hidden), parameters.normal_step, enu_from_model)
     return PreparedData(folder, tuple(kept), (bent, hidden), tuple(findings))
 
 

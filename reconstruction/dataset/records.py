@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import math
+import os
 import threading
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,14 +15,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.effects import Decision
-from planning.base.json_file import write_atomically
+from planning.base.errors import InputError
+from planning.base.files import read_input_file
+from planning.base.json_file import read_json, to_record, write_atomically
+from planning.base.messages import say
 from planning.geo.mesh import TriangleMesh
 from planning.geo.ray_casting import RayCaster
+from planning.photos.folder import OTHER_PICTURES, SUFFIXES
 from planning.site.records import Site
-from reconstruction.base.cameras import PosedPhoto
+from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.colmap.folder import write_model
-from reconstruction.colmap.georeference import model_of
-from reconstruction.colmap.record import ColmapPoints
+from reconstruction.colmap.georeference import Similarity, model_of
+from reconstruction.colmap.record import (
+    ColmapCamera,
+    ColmapImage,
+    ColmapModel,
+    ColmapPoints,
+    camera_of,
+    quaternion_of,
+)
+from reconstruction.photos.decode import PICTURE_FILE, picture_size
 
 # Points that reconstruction starts from: spread over the refined mesh, coloured by the photos that see them.
 
@@ -87,6 +101,28 @@ def start_points(mesh: TriangleMesh, n: int, seed: int = 0, cloud: Array | None 
     return ColouredPoints(np.concatenate([known, spread]))
 
 
+NEAR_PART, FAR_PART = 0.3, 1.7
+"""Of the distance to what cameras show, between which it may lie where no point says it."""
+
+
+def points_ahead(photos: Sequence[PosedPhoto], distance_m: float, n: int, seed: int = 0) -> Array:
+    """Places that photos may show, shape (n, 3), for splats to start from where no point is known: at random.
+
+    Parameters
+    ----------
+    distance_m
+        Usual one from the cameras to what they show.
+    """
+    rng = np.random.default_rng(seed)
+    of_each = np.bincount(rng.integers(0, len(photos), n), minlength=len(photos))
+    places = []
+    for photo, n_own in zip(photos, of_each.tolist(), strict=True):
+        lens = photo.intrinsics
+        origins, directions = photo.rays(rng.random((n_own, 2)) * (lens.width_px, lens.height_px))
+        places.append(origins + directions * (distance_m * rng.uniform(NEAR_PART, FAR_PART, (n_own, 1))))
+    return np.concatenate(places)
+
+
 DATASET_FORMAT = "reflight-dataset/1"
 
 OPENGL_FROM_CAM = np.diag([1.0, -1.0, -1.0])
@@ -100,8 +136,15 @@ def write_records(
     points: ColouredPoints,
     decisions: Sequence[Decision],
     normal_step: int,
+    enu_from_model: Similarity | None = None,
 ) -> None:
-    """Write sparse/0, points.ply, transforms.json and dataset.json; the world of all is the site's ENU frame."""
+    """Write sparse/0, points.ply, transforms.json and dataset.json; the world of all is the site's ENU frame.
+
+    Parameters
+    ----------
+    enu_from_model
+        What the photos' model was moved by, where nothing but it says what the frame is.
+    """
     n = len(points.points_enu_m)
     xyz, rgb = points.points_enu_m, points.rgb
     cloud = ColmapPoints(
@@ -110,7 +153,7 @@ def write_records(
     write_model(folder / "sparse" / "0", replace(model_of(photos), points=cloud))
     write_atomically(folder / "points.ply", coloured_ply(xyz, rgb))
     write_atomically(folder / "transforms.json", _json(transforms(photos)))
-    write_atomically(folder / "dataset.json", _json(_description(photos, site, decisions, normal_step)))
+    write_atomically(folder / "dataset.json", _json(_description(photos, site, decisions, normal_step, enu_from_model)))
 
 
 def transforms(photos: Sequence[PosedPhoto]) -> dict[str, Any]:
@@ -146,13 +189,18 @@ def transforms(photos: Sequence[PosedPhoto]) -> dict[str, Any]:
 
 
 def _description(
-    photos: Sequence[PosedPhoto], site: Site, decisions: Sequence[Decision], normal_step: int
+    photos: Sequence[PosedPhoto],
+    site: Site,
+    decisions: Sequence[Decision],
+    normal_step: int,
+    enu_from_model: Similarity | None,
 ) -> dict[str, Any]:
     panels = [(facade.id, panel) for facade in site.facades for panel in facade.panels]
     return {
         "format": DATASET_FORMAT,
         "site": site.name,
         "origin": asdict(site.origin),
+        **({} if enu_from_model is None else {"enu_from_model": _similarity(enu_from_model)}),
         "panels": [
             {
                 "index": number,
@@ -172,6 +220,14 @@ def _description(
     }
 
 
+def _similarity(similarity: Similarity) -> dict[str, Any]:
+    return {
+        "scale": similarity.scale,
+        "rotation": similarity.rotation.tolist(),
+        "translation": similarity.translation.tolist(),
+    }
+
+
 def coloured_ply(points_enu_m: NDArray[np.float64], rgb: NDArray[np.uint8]) -> bytes:
     """Binary PLY of a coloured point cloud, coordinates as float32 as all readers of splats expect."""
     fields = [(axis, "<f4") for axis in "xyz"] + [(colour, "u1") for colour in ("red", "green", "blue")]
@@ -188,3 +244,149 @@ def coloured_ply(points_enu_m: NDArray[np.float64], rgb: NDArray[np.uint8]) -> b
 
 def _json(content: dict[str, Any]) -> bytes:
     return json.dumps(content, indent=1).encode()
+
+
+# Cameras of nerfstudio and instant-ngp, read (docs.nerf.studio, "Data conventions"; instant-ngp, "Tips for training").
+#
+# Numbers of the lens stand at the top, or with a frame, which goes first. Older files have a field of view alone.
+
+TRANSFORMS_FILES = ("transforms.json", "transforms_train.json")
+"""Names of such files, the usual first."""
+
+PERSPECTIVE = ("PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV")
+"""Camera models that Brown's distortion tells."""
+
+MOST_SHEAR = 1e-2
+"""By which axes of a pose may miss unit length and right angles: files are rounded."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Lens:
+    """What a file or one of its frames says of the lens; None where it does not."""
+
+    camera_model: str | None = None
+    is_fisheye: bool = False
+    w: float | None = None
+    h: float | None = None
+    fl_x: float | None = None
+    fl_y: float | None = None
+    camera_angle_x: float | None = None
+    camera_angle_y: float | None = None
+    cx: float | None = None
+    cy: float | None = None
+    k1: float | None = None
+    k2: float | None = None
+    k3: float | None = None
+    k4: float | None = None
+    p1: float | None = None
+    p2: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Frame(_Lens):
+    file_path: str
+    transform_matrix: tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Transforms(_Lens):
+    frames: tuple[_Frame, ...]
+    ply_file_path: str | None = None
+
+
+def read_transforms(path: Path) -> tuple[ColmapModel, Path | None]:
+    """Cameras and images of a `transforms.json`, without points, and the file of points that it names.
+
+    Images' names are absolute paths of their files. The world is the file's own.
+
+    Raises
+    ------
+    InputError
+        The file is damaged, has no frames, no focal length, or a camera that is not understood.
+    """
+    content = to_record(read_json(path, names_files=True), _Transforms, path)
+    if not content.frames:
+        raise InputError(say("has no frames", place=path))
+    cameras: dict[ColmapCamera, int] = {}
+    images: dict[int, ColmapImage] = {}
+    nothing_seen = np.zeros((0, 2)), np.zeros(0, np.int64)
+    for number, frame in enumerate(content.frames, 1):
+        picture = _picture_of(path.parent, frame.file_path)
+        place = f"{path}, {frame.file_path}"
+        lens = camera_of(_intrinsics(content, frame, picture, place), 0)
+        rotation, centre = _pose_of(frame, place)
+        x, y, z = (-rotation @ centre).tolist()
+        camera_id = cameras.setdefault(lens, len(cameras) + 1)
+        images[number] = ColmapImage(
+            number, quaternion_of(rotation), (x, y, z), camera_id, picture.as_posix(), *nothing_seen
+        )
+    names = [image.name for image in images.values()]
+    if len(set(names)) < len(names):
+        raise InputError(say("names {} pictures twice", len(names) - len(set(names)), place=path))
+    model = ColmapModel({number: replace(camera, id=number) for camera, number in cameras.items()}, images)
+    return model, None if content.ply_file_path is None else path.parent / content.ply_file_path
+
+
+def _picture_of(folder: Path, name: str) -> Path:
+    """The file of a frame, an absolute path; names of rendered pictures have no ending."""
+    picture = Path(os.path.normpath((folder / name.replace("\\", "/")).absolute()))
+    if picture.suffix.lower() in SUFFIXES + OTHER_PICTURES or picture.is_file():
+        return picture
+    endings = (".png", *SUFFIXES, *OTHER_PICTURES)
+    return next((found for end in endings if (found := Path(f"{picture}{end}")).is_file()), picture)
+
+
+def _pose_of(frame: _Frame, place: str) -> tuple[Array, Array]:
+    """Camera from world, shape (3, 3), and the optical centre, shape (3,)."""
+    rows = frame.transform_matrix
+    if len(rows) not in (3, 4) or any(len(row) != 4 for row in rows):
+        raise InputError(say("transform_matrix: expected 4 x 4 numbers", place=place))
+    pose = np.array(rows[:3])
+    if not np.isfinite(pose).all():
+        raise InputError(say("transform_matrix: expected finite numbers", place=place))
+    u, lengths, vt = np.linalg.svd(pose[:, :3])
+    turn = u @ vt
+    if np.abs(lengths - 1.0).max() > MOST_SHEAR or np.linalg.det(turn) < 0.0:
+        raise InputError(say("transform_matrix: expected a rotation and a place, without scale", place=place))
+    return OPENGL_FROM_CAM @ turn.T, pose[:, 3]
+
+
+def _intrinsics(content: _Transforms, frame: _Frame, picture: Path, place: str) -> Intrinsics:
+    def number(name: str, otherwise: float = 0.0) -> float:
+        own, common = getattr(frame, name), getattr(content, name)
+        return float(own if own is not None else common if common is not None else otherwise)
+
+    model = frame.camera_model or content.camera_model or "OPENCV"
+    is_fisheye = frame.is_fisheye or content.is_fisheye
+    if model not in PERSPECTIVE or is_fisheye:
+        raise InputError(
+            say(
+                "the camera model {} is not supported; expected one of {}; undistort the pictures first, such as with "
+                "COLMAP's image_undistorter, whose model 'prepare --colmap' reads",
+                "OPENCV_FISHEYE" if is_fisheye else model,
+                ", ".join(PERSPECTIVE),
+                place=place,
+            )
+        )
+    if number("k4"):
+        raise InputError(say("k4: expected 0, as only k1, k2, k3, p1 and p2 are understood", place=place))
+    width, height = number("w"), number("h")
+    if not (width and height):
+        size = picture_size(read_input_file(picture, PICTURE_FILE))
+        if size is None:
+            raise InputError(say("cannot be decoded as a picture", place=picture))
+        width, height = size
+    half_x, half_y = 0.5 * number("camera_angle_x"), 0.5 * number("camera_angle_y")
+    fx = number("fl_x") or (0.5 * width / math.tan(half_x) if 0.0 < half_x < 0.5 * math.pi else 0.0)
+    # Fields of view of both axes are rounded on their own, and pixels are square.
+    fy = number("fl_y") or fx or (0.5 * height / math.tan(half_y) if 0.0 < half_y < 0.5 * math.pi else 0.0)
+    if not fy:
+        raise InputError(say("says no focal length: expected fl_x, or camera_angle_x", place=place))
+    distortion = number("k1"), number("k2"), number("p1"), number("p2"), number("k3")
+    try:
+        return Intrinsics(
+            *(round(width), round(height), fx or fy, fy),
+            *(number("cx", 0.5 * width), number("cy", 0.5 * height), distortion),
+        )
+    except ValueError as error:
+        raise InputError(say("{}", error, place=place)) from error

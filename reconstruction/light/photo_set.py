@@ -146,8 +146,8 @@ def check_finished(folder: Path) -> Path:
         within = model_within(folder)
         if within is not None:
             raise InputError.say(
-                "has no dataset.json, but a COLMAP model in {}; 'prepare PHOTOS SITE --colmap' makes a data set of it, "
-                "and where there is no site, 'coarse PHOTOS' makes one of the photos alone",
+                "has no dataset.json, but a COLMAP model in {}; 'prepare PHOTOS --colmap MODEL' makes one of it, "
+                "with a site and its panels or without",
                 within,
                 place=folder,
             )

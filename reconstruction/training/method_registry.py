@@ -21,7 +21,8 @@ from planning.base.plugins import Plugin, PluginGroup, expect_type, guarded, loa
 Primitive = Literal["discs", "ellipsoids"]
 """What splats are: flat Gaussian discs (2DGS), or Gaussian ellipsoids drawn by EWA splatting (3DGS)."""
 
-DEFAULT_METHOD = "reflight"
+DEFAULT_METHOD, PLAIN_METHOD = "reflight", "2dgs"
+"""What is trained where nothing else is asked for, with panels and without."""
 
 
 @dataclass(frozen=True, slots=True)

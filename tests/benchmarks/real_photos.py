@@ -25,7 +25,6 @@ from scipy.spatial.transform import Rotation
 from groundstation.services.model.rendering import stored_lpips_weights
 from groundstation.services.photos.coarse import SITE_FILE, SPARSE, coarse_files
 from groundstation.services.project.input_files import read_input_site
-from groundstation.services.reconstruct.training import PLAIN_METHOD
 from groundstation.services.scenes.photos import render_photos
 from reconstruction.base.cameras import Pose, PosedPhoto
 from reconstruction.coarse.parameters import CoarseRequest
@@ -38,7 +37,7 @@ from reconstruction.scenes.parameters import SceneRequest
 from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.surfels import colmap_points
 from reconstruction.training.config import config_of
-from reconstruction.training.method_registry import DEFAULT_METHOD, method_named
+from reconstruction.training.method_registry import DEFAULT_METHOD, PLAIN_METHOD, method_named
 from reconstruction.training.model.render import render_view
 from reconstruction.training.model.saved import TrainedModel
 from reconstruction.training.model.score import ViewScores, mean_of, score_views

@@ -13,9 +13,13 @@ from planning.base.messages import glue
 EPILOG = """Writes images/, sparse/0 and points.ply as COLMAP and splatting programs read them, transforms.json for
 nerfstudio, and panels/, masks/ and normals/ (docs/reference/file-formats.md, reflight-dataset/1).
 
+Without SITE it is a data set for plain splats, in the frame and the units of a model of another program: PHOTOS has
+images/ and sparse/0 of COLMAP, or transforms.json of nerfstudio, or --colmap names one.
+
 examples:
   prepare photos/ tower.site.json -o tower.dataset
   prepare photos/ tower.site.json -o tower.dataset --colmap sparse/0 --normal-step 4
+  prepare garden/ -o garden.dataset
 """
 
 
@@ -30,8 +34,10 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.set_defaults(run=run)
     add = parser.add_argument
-    add("photos", type=Path, metavar="PHOTOS", help="folder of photos, as they come from the camera's card")
-    add("site", type=Path, metavar="SITE", help="site file with its panels")
+    add(
+        "photos", type=Path, metavar="PHOTOS", help="folder of photos, or of them with their COLMAP or nerfstudio model"
+    )
+    add("site", type=Path, nargs="?", metavar="SITE", help="site file with its panels; without, plain splats")
     add("-o", "--out", type=new_folder, required=True, metavar="FOLDER", help="new folder for the data set")
     add_pose_arguments(parser)
     add("--normal-step", type=int, default=2, metavar="N", help="photo pixels per pixel of normal maps (default 2)")

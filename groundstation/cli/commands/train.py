@@ -66,7 +66,12 @@ def add_parser(subparsers: Any) -> None:
     parser.set_defaults(run=run)
     parser.more_help = METHOD_NAMES.help_on_plugins
     add = parser.add_argument
-    add("dataset", type=Path, metavar="DATASET", help="folder of a data set, or of a coarse model")
+    add(
+        "dataset",
+        type=Path,
+        metavar="DATASET",
+        help="folder of a data set, or what becomes one: a coarse model, photos with a COLMAP or nerfstudio model",
+    )
     add("-o", "--out", type=new_folder, required=True, metavar="MODEL", help="folder for the model")
     for name, each in declared(TrainRequest).items():
         if each.parameter.option:

@@ -150,14 +150,22 @@ IN_WINDOW = {
         "Sentences", "import it first: Site > Import building model"
     ),
     (
-        "has no dataset.json, but a COLMAP model in {0}; 'prepare PHOTOS SITE --colmap' makes a data set of it, "
-        "and where there is no site, 'coarse PHOTOS' makes one of the photos alone"
+        "has no dataset.json, but a COLMAP model in {0}; 'prepare PHOTOS --colmap MODEL' makes one of it, "
+        "with a site and its panels or without"
     ): QT_TRANSLATE_NOOP(
         "Sentences",
         "has no dataset.json, but a COLMAP model in {0}; the Photos tab makes a data set of its photos",
     ),
     "has no dataset.json; name a folder that `prepare` or `scene render` has finished": QT_TRANSLATE_NOOP(
         "Sentences", "has no dataset.json; choose the folder of a data set that is finished"
+    ),
+    (
+        "has no panels, and {0} learns what panels mirror; train plain splats instead (--method 2dgs), or find its "
+        "panels first"
+    ): QT_TRANSLATE_NOOP(
+        "Sentences",
+        "has no panels, and {0} learns what panels mirror; train plain splats instead (“Method”: 2DGS), or find its "
+        "panels first",
     ),
     "name one of `train`": QT_TRANSLATE_NOOP("Sentences", "choose one that a training has finished"),
     (

@@ -49,7 +49,7 @@ from planning.base.errors import GroundStationError
 from planning.base.files import real_path
 from planning.base.findings import Severity
 from reconstruction.light.photo_set import held_out_names
-from reconstruction.training.method_registry import method_named
+from reconstruction.training.method_registry import PLAIN_METHOD, method_named
 
 # Which data set is learned from, how, and where the model goes: what the Reconstruct tab has before it trains.
 
@@ -112,15 +112,23 @@ class FolderController(QObject):
     # What is chosen
 
     def read(self, folder: Path) -> None:
-        """Take a data set folder."""
+        """Take a data set folder, or one that a data set can be made of without a site."""
         if self._is_reading:
             return
 
         def work(context: JobContext) -> DataSetCard:
-            return read_data_set(folder, context)
+            from groundstation.services.photos.coarse import data_set_of
+
+            return read_data_set(data_set_of(folder, context), context)
+
+        def done(card: DataSetCard) -> None:
+            if real_path(card.folder) != real_path(folder):
+                text = self.tr("A data set for plain splats was made of {0}: {1}")
+                self._context.say(Severity.OK, text.format(folder, card.folder))
+            self._read(card)
 
         self._is_reading = True
-        self._context.start(self.tr("Read the data set"), work, self._read, self._not_read)
+        self._context.start(self.tr("Read the data set"), work, done, self._not_read)
         self.stateChanged.emit()
 
     def choose(self, choice: TrainChoice) -> None:
@@ -149,6 +157,8 @@ class FolderController(QObject):
 
     def _read(self, card: DataSetCard) -> None:
         self._is_reading, self.card = False, card
+        if not len(card.source.panels.corners_enu_m) and method_named(self.choice.method).knows_panels:
+            self.choice = replace(self.choice, method=PLAIN_METHOD)
         noted = noted_data_set(self.out)
         if not self.standing.is_interrupted or (noted is not None and real_path(noted) != real_path(card.folder)):
             self._propose()

@@ -318,6 +318,7 @@ class ReconstructPage(GradualTab):
         self.light.valueChanged.connect(self._light_chosen)
         self.light.asked.connect(controller.ask_scene)
         controller.dataSetChanged.connect(self.pane.set_data_set)
+        controller.dataSetChanged.connect(self._show_choice)
         controller.placeChanged.connect(self.pane.offer_models)
         controller.stateChanged.connect(self._show_state)
         controller.progressed.connect(self._show_progress)
@@ -366,6 +367,11 @@ class ReconstructPage(GradualTab):
         self.controller.close()
 
     # What is shown
+
+    def _show_choice(self) -> None:
+        """Show the method that a data set without panels is trained by."""
+        if self.side.form.value().method != self.controller.choice.method:
+            self.side.form.setValue(self.controller.choice)
 
     def _show_state(self) -> None:
         controller = self.controller

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.services.photos.dataset import prepare_files
+from groundstation.services.photos.poses import poses_within
 from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.files import check_folder_name
@@ -31,6 +32,7 @@ from reconstruction.coarse.control_and_camera import read_control_points, read_l
 from reconstruction.coarse.inputs import Stated
 from reconstruction.coarse.parameters import CoarseRequest
 from reconstruction.coarse.placing import GUESSED
+from reconstruction.dataset.prepare import DATA_SET as FINISHED
 from reconstruction.photos.lens import CameraKind
 
 Array = NDArray[np.float64]
@@ -299,19 +301,26 @@ def _finite(value: float) -> float | None:
 
 
 def data_set_of(folder: Path, monitor: Monitor = QUIET) -> Path:
-    """The data set folder that stands for a folder: itself, or what is prepared of a coarse model for plain splats.
+    """The data set folder that stands for a folder: itself, or what is prepared for plain splats.
+
+    That is of a coarse model in its folder, and of photos with a model of another program beside theirs.
 
     Raises
     ------
     InputError
-        It is a coarse model whose photos cannot be found or prepared.
+        It is a coarse model, or one of another program, whose photos cannot be found or prepared.
     """
-    report = folder / REPORT_FILE
-    if not report.is_file():
+    if (folder / REPORT_FILE).is_file():
+        out = folder / DATA_SET
+        if not (out / FINISHED).is_file():
+            prepare_coarse(folder, out, monitor)
+        return out
+    if (folder / FINISHED).is_file() or poses_within(folder) is None:
         return folder
-    out = folder / DATA_SET
-    if not (out / "dataset.json").is_file():
-        prepare_coarse(folder, out, monitor)
+    whole = folder.absolute()
+    out = whole.with_name(f"{whole.name}.dataset")
+    if not (out / FINISHED).is_file():
+        prepare_files(folder, None, out, monitor=monitor)
     return out
 
 

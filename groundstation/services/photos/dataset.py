@@ -6,18 +6,26 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from groundstation.services.photos.intake import PhotoIntake
 from groundstation.services.photos.poses import (
+    ChosenPoses,
     RefinedOutcome,
     RefineRequest,
+    photos_alone,
     photos_with_poses,
     refined_summary,
 )
 from groundstation.services.project.input_files import read_input_site
+from planning.base.errors import InputError
 from planning.base.findings import Finding
+from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
+from planning.geo.frames import Origin
+from planning.geo.mesh import empty_mesh
 from planning.photos.places import PhotoHeights
-from planning.site.records import SiteModel
+from planning.site.records import Airspace, Site, SiteModel
 from reconstruction.dataset.prepare import PreparedData, PrepareParameters, prepare
 
 
@@ -40,7 +48,7 @@ class PreparedFiles:
 
 def prepare_files(
     folder: Path,
-    site: Path,
+    site: Path | None,
     out: Path,
     parameters: PrepareParameters | None = None,
     *,
@@ -51,15 +59,46 @@ def prepare_files(
 ) -> PreparedFiles:
     """Write the data set of a folder of photos.
 
+    Parameters
+    ----------
+    site
+        None for plain splats in the frame of a model of another program, which lies in the folder or is named.
+
     Raises
     ------
     InputError
         Photos, site or COLMAP model cannot be used, poses cannot be refined, or the data set cannot be written.
     """
+    if site is None:
+        if refine is not None:
+            raise InputError(say("poses are refined in the frame of a site; name it, or leave --refine out"))
+        alone = photos_alone(folder, colmap, heights=heights, monitor=monitor)
+        chosen = alone.chosen
+        plain = _bare_site(folder.resolve().name, alone.origin, chosen)
+        prepared = prepare(chosen.photos, plain, out, parameters, monitor, chosen.points_enu_m, alone.enu_from_model)
+        return PreparedFiles(prepared, (*chosen.findings, *prepared.findings), None)
     model = read_input_site(site)
     better = photos_with_poses(folder, model.site, heights=heights, colmap=colmap, refine=refine, monitor=monitor)
     prepared = prepare(better.photos, model, out, parameters, monitor, better.points_enu_m)
     return PreparedFiles(prepared, (*better.findings, *prepared.findings), better.refined)
+
+
+AROUND_PERCENT, AROUND_M = 1.0, 1.0
+"""Of points that may be mismatches, on each side of the bounds of a place without a site; and around those."""
+
+
+def _bare_site(name: str, origin: Origin | None, chosen: ChosenPoses) -> SiteModel:
+    """A place with nothing on it that holds photos and points."""
+    places = np.array([photo.pose.position_enu_m for photo in chosen.photos])
+    if chosen.points_enu_m is not None:
+        bounds = np.percentile(chosen.points_enu_m, (AROUND_PERCENT, 100.0 - AROUND_PERCENT), axis=0)
+        places = np.concatenate([places, bounds])
+    low, high = places.min(axis=0) - AROUND_M, places.max(axis=0) + AROUND_M
+    (x, y, z), (east, north, up) = low.tolist(), high.tolist()
+    air = Airspace((x, y, z), (east, north, up), z)
+    known = Origin(0.0, 0.0, 0.0) if origin is None else origin
+    site = Site(name, known, (), air, (x, y, z), place_from="" if origin else "unknown", is_bare=True)
+    return SiteModel(site, empty_mesh())
 
 
 def prepare_read(intake: PhotoIntake, model: SiteModel, out: Path, monitor: Monitor = QUIET) -> PreparedData:

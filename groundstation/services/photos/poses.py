@@ -13,24 +13,29 @@ from numpy.typing import NDArray
 
 from planning.base.effects import EffectSetting
 from planning.base.errors import InputError
+from planning.base.files import read_input_file
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
+from planning.geo.frames import Origin
 from planning.photos.folder import is_other_picture, read_photos
 from planning.photos.places import Locality, PhotoHeights
 from planning.photos.record import PhotoMetadata
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.colmap.folder import Frame, read_frame, read_model
+from reconstruction.coarse.inputs import provisional_place
+from reconstruction.coarse.placing import in_own_frame, usual_distance
+from reconstruction.colmap.folder import Frame, model_within, read_frame, read_model
 from reconstruction.colmap.georeference import (
     ADJUSTED_SIGMA_DEG,
     ADJUSTED_SIGMA_M,
     Similarity,
     georeference,
+    in_enu,
     named_below,
     posed_photos,
 )
 from reconstruction.colmap.pycolmap_run import RefineParameters, load_colmap
-from reconstruction.colmap.record import ColmapModel
+from reconstruction.colmap.record import ColmapModel, ColmapPoints
 from reconstruction.colmap.refine import refine_poses
 from reconstruction.colmap.refined_folder import (
     StoredRefinement,
@@ -41,6 +46,8 @@ from reconstruction.colmap.refined_folder import (
     read_refined,
     write_refined,
 )
+from reconstruction.dataset.records import TRANSFORMS_FILES, points_ahead, read_transforms
+from reconstruction.photos.decode import PICTURE_FILE, picture_size
 from reconstruction.photos.poses import UNPOSED, PhotoSet, name_in, pose_photos, unposed_findings
 
 LENS_UNKNOWN = "lens-distortion-unknown"
@@ -182,7 +189,7 @@ def choose_poses(
     folder
         Of the photos.
     colmap
-        Folder of a COLMAP model, also one that `refine` kept.
+        Folder of a COLMAP model, also one that `refine` kept; or nerfstudio's transforms.json.
 
     Raises
     ------
@@ -199,8 +206,167 @@ def choose_poses(
         kept = read_refined(colmap, posed.photos)
         if kept.photos_sha256 == fingerprint(posed.photos):
             return _judged(posed.photos, kept, colmap, was_kept=True)
-    model = named_below(read_model(colmap), folder)
+    model = named_below(read_poses(colmap), folder)
     return _fitted(_of_model(model, read_frame(colmap), posed, folder), posed.sizes_px)
+
+
+def read_poses(place: Path) -> ColmapModel:
+    """The model of a COLMAP folder, or of nerfstudio's transforms.json and the folder that has one.
+
+    Raises
+    ------
+    InputError
+        It is none of these, or damaged.
+    """
+    inside = (place / name for name in TRANSFORMS_FILES)
+    path = next((each for each in inside if each.is_file()), None) if place.is_dir() else place
+    if path is None or (path == place and place.suffix.lower() != ".json"):
+        return read_model(place)
+    model, cloud = read_transforms(path)
+    if cloud is None or not cloud.is_file():
+        return model
+    from reconstruction.splats.surfels import read_points
+
+    xyz, rgb = read_points(cloud)
+    n = len(xyz)
+    return replace(
+        model,
+        points=ColmapPoints(
+            np.arange(1, n + 1), xyz, rgb, np.full(n, -1.0), np.zeros(n + 1, np.int64), np.zeros((0, 2), np.int64)
+        ),
+    )
+
+
+# Photos of which no site is known: a folder with a model of another program.
+
+IMAGES = ("images", "input")
+"""Folders of photos, in those of COLMAP, nerfstudio and programs for splats."""
+
+N_AHEAD = 30_000
+"""Places that splats start from, where a model has no points."""
+
+
+def poses_within(folder: Path) -> Path | None:
+    """What says the poses of the photos in a folder, where other programs leave it; None where there is nothing.
+
+    It lies in the folder, or beside it where that is called as photos are: nerfstudio's file goes before COLMAP's.
+    """
+    for place in (folder, folder.absolute().parent) if folder.name in IMAGES else (folder,):
+        named = next((place / name for name in TRANSFORMS_FILES if (place / name).is_file()), None)
+        found = named or model_within(place)
+        if found is not None:
+            return found
+    return None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PhotosAlone:
+    """Photos of a model of another program, in a frame of their own.
+
+    Parameters
+    ----------
+    chosen
+        Photos with poses and points.
+    origin
+        Of the frame; None where nothing says it.
+    enu_from_model
+        How the model lies in the frame where only itself says so; None where it has a place, or is in ENU already.
+    """
+
+    chosen: ChosenPoses
+    origin: Origin | None
+    enu_from_model: Similarity | None
+
+
+def photos_alone(
+    folder: Path, colmap: Path | None = None, *, heights: PhotoHeights = "auto", monitor: Monitor = QUIET
+) -> PhotosAlone:
+    """The photos of a folder as a model has them that lies in it, or is named.
+
+    Where at least three of them say a pose they say where the model is, too, and how large; else its own frame counts.
+
+    Raises
+    ------
+    InputError
+        There is no model, none of its images is there, or one of both is damaged.
+    """
+    place = poses_within(folder) if colmap is None else colmap
+    if place is None and folder.is_dir():
+        raise InputError.say(
+            "holds no COLMAP model (such as sparse/0) and no transforms.json; name it with --colmap, name a site if "
+            "the photos say where they were taken, or make a model of them with 'coarse'",
+            place=folder,
+        )
+    model = read_poses(place) if place is not None else ColmapModel({}, {})
+    photos_folder = _folder_of_images(model, folder)
+    model = named_below(model, photos_folder)
+    read = read_photos(photos_folder, monitor, posed_elsewhere=True)
+    frame = read_frame(place) if place is not None and place.is_dir() else None
+    here = provisional_place(read.photos, folder.name)
+    nothing = PhotoSet(
+        (), (), (), (), (), {name_in(photos_folder, one): (one.width_px, one.height_px) for one in read.photos}
+    )
+    posed = nothing
+    if here is not None:
+        posed = pose_photos(read.photos, here, photos_folder, heights=heights, posed_elsewhere=True)
+    n_placed = len({photo.name for photo in posed.photos} & {image.name for image in model.images.values()})
+    own: Similarity | None = None
+    if frame is None and n_placed < LEAST_PLACED:
+        own, notes = in_own_frame(model, {name_in(photos_folder, one): one for one in read.photos})
+        found = _in_frame(in_enu(model, own), USUAL_FRAME, nothing, photos_folder)
+        found = replace(found, findings=(*notes, *found.findings))
+    else:
+        found = _of_model(model, frame, posed, photos_folder)
+    found = _fitted(found, posed.sizes_px)
+    if found.points_enu_m is None:
+        found = _with_points_ahead(found)
+    origin = None if own is not None or here is None else here.origin
+    findings = (*read.findings, *findings_that_hold(posed, found), *found.findings)
+    return PhotosAlone(replace(found, findings=findings), origin if frame is None else frame.origin or origin, own)
+
+
+LEAST_PLACED = 3
+"""Photos with a pose of their own that a model can be laid into place by."""
+
+
+def _folder_of_images(model: ColmapModel, folder: Path) -> Path:
+    """The folder that the model's images lie in: the one that is named, or that of photos in it.
+
+    Raises
+    ------
+    InputError
+        None of the images is there.
+    """
+    if not folder.is_dir():
+        return folder  # reading it says what is wrong
+    names = [image.name for image in model.images.values()]
+    folders = [folder / name for name in IMAGES if (folder / name).is_dir()] + [folder]
+    counts = [sum(_is_below(one, name) for name in names) for one in folders]
+    if not any(counts):
+        raise InputError.say(
+            "none of the {} images of the model is in this folder, the first '{}'; name the folder that holds the "
+            "photos, with the names that they have in the model",
+            len(names),
+            min(names, default=""),
+            place=folder,
+        )
+    return folders[int(np.argmax(counts))]
+
+
+def _is_below(folder: Path, name: str) -> bool:
+    path = folder / name
+    return path.is_file() and path.absolute().is_relative_to(folder.absolute())
+
+
+def _with_points_ahead(found: ChosenPoses) -> ChosenPoses:
+    points = points_ahead(found.photos, usual_distance(found.photos, np.zeros((0, 3))), N_AHEAD)
+    text = say(
+        "the model has no points: splats start from {} random places before the cameras, which takes longer and may "
+        "end in fog; a COLMAP model's points, or a ply_file_path, are a better start",
+        len(points),
+    )
+    note = Finding(Severity.WARNING, "no-points", text, "", 0.0, 1.0, "points")
+    return replace(found, points_enu_m=points, findings=(*found.findings, note))
 
 
 def _of_model(model: ColmapModel, frame: Frame | None, posed: PhotoSet, folder: Path) -> ChosenPoses:
@@ -212,7 +378,7 @@ def _of_model(model: ColmapModel, frame: Frame | None, posed: PhotoSet, folder: 
             "the photos do not say where they were taken, so the COLMAP model counts as one in the frame of the site"
         )
         found = _in_frame(model, USUAL_FRAME, posed, folder)
-        return replace(found, findings=(Finding(Severity.NOTE, "model-as-it-is", text),))
+        return replace(found, findings=(Finding(Severity.NOTE, "model-as-it-is", text), *found.findings))
     reference = georeference(model, posed.photos)
     times = {photo.name: photo.taken_at for photo in posed.photos}
     better = posed_photos(model, reference.enu_from_model, folder, times)
@@ -228,7 +394,7 @@ def _of_model(model: ColmapModel, frame: Frame | None, posed: PhotoSet, folder: 
 
 def _fitted(chosen: ChosenPoses, sizes_px: Mapping[str, tuple[int, int]]) -> ChosenPoses:
     """Poses of a model with its cameras scaled to photos that are smaller or larger than those it was made of."""
-    photos = tuple(_scaled(photo, sizes_px.get(photo.name)) for photo in chosen.photos)
+    photos = tuple(_scaled(photo, sizes_px.get(photo.name) or _size_px(photo.path)) for photo in chosen.photos)
     n = sum(one is not other for one, other in zip(photos, chosen.photos, strict=True))
     if not n:
         return chosen
@@ -240,6 +406,14 @@ def _fitted(chosen: ChosenPoses, sizes_px: Mapping[str, tuple[int, int]]) -> Cho
     )
     note = Finding(Severity.NOTE, "cameras-scaled", text, "", float(n), None, "photos")
     return replace(chosen, photos=photos, findings=(*chosen.findings, note))
+
+
+def _size_px(path: Path) -> tuple[int, int] | None:
+    """Of a picture that says nothing of itself; of one that cannot be read it is said when it is prepared."""
+    try:
+        return picture_size(read_input_file(path, PICTURE_FILE))
+    except InputError:
+        return None
 
 
 def _scaled(photo: PosedPhoto, size_px: tuple[int, int] | None) -> PosedPhoto:
@@ -277,7 +451,18 @@ def _in_frame(model: ColmapModel, frame: Frame, posed: PhotoSet, folder: Path) -
                 folder,
             )
         )
-    return ChosenPoses(photos, points_enu_m=model.points.xyz if len(model.points) else None)
+    missing = [photo for photo in found if not photo.path.is_file()]
+    findings: tuple[Finding, ...] = ()
+    if missing:
+        text = say(
+            "{} of {} images of the COLMAP model are not in {}, the first {}; they are left out",
+            len(missing),
+            len(found),
+            folder,
+            missing[0].name,
+        )
+        findings = (Finding(Severity.WARNING, "images-missing", text, "", float(len(missing)), 0.0, "photos"),)
+    return ChosenPoses(photos, findings, points_enu_m=model.points.xyz if len(model.points) else None)
 
 
 def refined_poses(

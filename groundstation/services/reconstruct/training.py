@@ -14,6 +14,7 @@ from planning.base.json_file import check_output, read_toml, write_atomically
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.tradeoff.runner import ComparisonFiles, Subject, compare
+from reconstruction.training.method_registry import PLAIN_METHOD
 from reconstruction.training.parameters import DEFAULT_PRESET, TrainRequest
 
 if TYPE_CHECKING:
@@ -191,22 +192,21 @@ def _trained(
     return train_model(dataset, config, watching, checkpoint, splats_path=request.start, ranks=ranks, watch=watch)
 
 
-PLAIN_METHOD = "2dgs"
-"""What learns a scene without panels, unless another method is asked for."""
-
-
 def _config_of_data_set(dataset: Path, request: TrainRequest) -> TrainConfig:
-    """Settings of a request; of plain splats where the data set has no panels and nothing else is asked for."""
+    """Settings of a request; of plain splats where the data set has no panels and no method is asked for."""
     from reconstruction.training.model.record import site_record
 
     config = config_of_request(request)
     if not config.trained_by.knows_panels or site_record(dataset).panels:
         return config
-    if request.method is None and request.settings is None:
-        return config_of_request(replace(request, method=PLAIN_METHOD))
+    if request.method is None:
+        config = config_of_request(replace(request, method=PLAIN_METHOD))  # a method that the file names goes before
+        if not config.trained_by.knows_panels:
+            return config
     raise InputError(
         say(
-            "has no panels, and {} learns what panels mirror; train plain splats instead, or find its panels first",
+            "has no panels, and {} learns what panels mirror; train plain splats instead (--method 2dgs), or find its "
+            "panels first",
             config.method,
             place=dataset,
         )

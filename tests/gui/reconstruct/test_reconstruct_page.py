@@ -30,6 +30,7 @@ from groundstation.services.reconstruct.messages import (
 from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.findings import Severity
+from tests.cli.test_photos_without_a_site import write_project
 from tests.gui.driving import choose, clicked, escape, shut, turn_until
 
 TRAINING = Subject("training")
@@ -67,6 +68,16 @@ def test_a_folder_that_is_no_data_set_is_told_and_can_be_followed_by_one_that_is
     page.controller.read(data)
     turn_until(application, lambda: page.controller.card is not None)
     assert "6 photos" in page.side.data_set.text()
+    assert page.side.train.isEnabled()
+
+
+def test_a_folder_of_colmap_is_made_a_data_set_of_plain_splats(application, page, tmp_path):
+    write_project(tmp_path / "wall")
+    page.controller.read(tmp_path / "wall")
+    turn_until(application, lambda: page.controller.card is not None)
+    assert page.controller.card.folder == tmp_path / "wall.dataset"
+    assert "plain splats" in page.messages[-1].text
+    assert page.controller.choice.method == page.side.form.value().method == "2dgs"
     assert page.side.train.isEnabled()
 
 

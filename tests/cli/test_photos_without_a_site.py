@@ -1,0 +1,243 @@
+"""Photos with a model of COLMAP or nerfstudio, and no site: data set, training, score and export of plain splats."""
+
+import json
+import math
+import shutil
+
+import cv2
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from planning.photos.folder import read_photos
+from reconstruction.colmap.folder import read_model, write_model
+from reconstruction.colmap.georeference import Similarity, in_enu, model_of
+from reconstruction.colmap.record import ColmapPoints
+from reconstruction.dataset.records import coloured_ply, read_transforms, transforms
+from reconstruction.light.photo_set import read_photo_set
+from reconstruction.photos.poses import pose_photos
+from reconstruction.splats.surfels import read_points
+from tests.reconstruction.light.synthetic_folder import cameras, corners_of, far, panel_numbers, picture
+from tests.services.photo_cases import site_model, write_photos
+
+N = 6
+ON_ITS_SIDE = Similarity(1.0, Rotation.from_euler("xyz", (80.0, 10.0, -25.0), degrees=True).as_matrix(), np.zeros(3))
+
+
+def points_on_glass(n=400):
+    rng = np.random.default_rng(1)
+    xyz = np.column_stack([rng.uniform(-3.0, 3.0, n), np.zeros(n), rng.uniform(1.0, 5.0, n)])
+    nothing = np.full(n, -1.0), np.zeros(n + 1, np.int64), np.zeros((0, 2), np.int64)
+    return ColmapPoints(np.arange(1, n + 1), xyz, rng.integers(0, 255, (n, 3)).astype(np.uint8), *nothing)
+
+
+def write_project(folder, kind="bin", moved=ON_ITS_SIDE, points=True):
+    """`images/` and `sparse/0` of a wall that is seen from six places, in a frame of the model's own."""
+    photos = cameras(folder, N)
+    (folder / "images").mkdir(parents=True)
+    for photo in photos:
+        shown = picture(photo, panel_numbers(photo, corners_of()) > 0, far, 1.0)
+        assert cv2.imwrite(str(photo.path), shown[..., ::-1])
+    model = model_of(photos)
+    if points:
+        model = type(model)(model.cameras, model.images, points_on_glass())
+    write_model(folder / "sparse" / "0", in_enu(model, moved), kind)
+    return photos
+
+
+def prepared(reflight, *arguments, out):
+    done = reflight("prepare", *arguments, "-o", out, "--normal-step", 4)
+    assert done.status == 0, done
+    return done
+
+
+def apart(one, other):
+    """Distances between all cameras of two lists, one of each: the same in any frame of the same size."""
+    a, b = (np.array([photo.pose.position_enu_m for photo in photos]) for photos in (one, other))
+    return tuple(np.linalg.norm(each[:, None] - each, axis=2) for each in (a, b))
+
+
+@pytest.mark.parametrize("kind", ["bin", "txt"])
+def test_a_colmap_folder_becomes_a_data_set_that_stands_upright(reflight, tmp_path, kind):
+    true = write_project(tmp_path / "wall", kind)
+    out = tmp_path / "wall.dataset"
+    done = prepared(reflight, tmp_path / "wall", out=out)
+    assert "6 photos prepared" in done.out
+    assert "the frame is that of their model, and one unit of it counts as 1 m" in done.err
+    assert "was turned by" in done.err
+    data = read_photo_set(out)
+    assert [photo.name for photo in data.photos] == [photo.name for photo in true]
+    assert np.allclose(*apart(data.photos, true))
+    ups = np.array([-photo.pose.cam_from_enu[1] for photo in data.photos])
+    rights = np.array([photo.pose.cam_from_enu[0] for photo in data.photos])
+    assert np.abs(rights[:, 2]).max() < 0.01
+    assert ups[:, 2].min() > 0.5
+    described = json.loads((out / "dataset.json").read_text())
+    assert described["panels"] == []
+    moved = Similarity(*(np.array(described["enu_from_model"][key]) for key in ("scale", "rotation", "translation")))
+    stored = read_model(tmp_path / "wall" / "sparse" / "0")
+    xyz, _ = read_points(out / "points.ply")
+    assert np.allclose(xyz, moved(stored.points.xyz), atol=1e-5)
+    assert not (out / "refined.ply").exists()
+
+
+def test_the_folder_of_photos_and_a_named_model_do_as_well(reflight, tmp_path):
+    write_project(tmp_path / "wall")
+    images = tmp_path / "wall" / "images"
+    whole = prepared(reflight, tmp_path / "wall", out=tmp_path / "a")
+    beside = prepared(reflight, images, out=tmp_path / "b")
+    (tmp_path / "wall" / "sparse" / "0").rename(tmp_path / "model")
+    named = prepared(reflight, images, "--colmap", tmp_path / "model", out=tmp_path / "c")
+    assert whole.err.replace("/a", "") == beside.err.replace("/b", "") == named.err.replace("/c", "")
+    names = {each.relative_to(tmp_path / "a") for each in (tmp_path / "a").rglob("*.png")}
+    for other in ("b", "c"):
+        assert {each.relative_to(tmp_path / other) for each in (tmp_path / other).rglob("*.png")} == names
+
+
+@pytest.mark.parametrize(("scale", "counts_as"), [(0.01, "100 m"), (1.0, "1 m"), (8.0, "1 m"), (1000.0, "0.001 m")])
+def test_units_that_cannot_be_metres_are_scaled_by_tens(reflight, tmp_path, scale, counts_as):
+    moved = Similarity(scale, ON_ITS_SIDE.rotation, np.array([5e5, 5e6, 100.0]) if scale == 8.0 else np.zeros(3))
+    true = write_project(tmp_path / "wall", moved=moved)
+    done = prepared(reflight, tmp_path / "wall", out=tmp_path / "d")
+    assert f"one unit of it counts as {counts_as}" in done.err
+    assert ("near zero" in done.err) == (scale == 8.0)
+    data = read_photo_set(tmp_path / "d")
+    mine, theirs = apart(data.photos, true)
+    assert np.allclose(mine, (8.0 if scale == 8.0 else 1.0) * theirs, atol=1e-3)
+    assert max(np.abs(photo.pose.position_enu_m).max() for photo in data.photos) < 1000.0
+
+
+@pytest.mark.parametrize("kind", ["nerfstudio", "rendered"])
+def test_transforms_json_is_read(reflight, tmp_path, kind):
+    folder = tmp_path / "wall"
+    true = write_project(folder)
+    shutil.rmtree(folder / "sparse")
+    content = transforms(true)
+    if kind == "nerfstudio":
+        cloud = points_on_glass()
+        (folder / "sparse_pc.ply").write_bytes(coloured_ply(cloud.xyz, cloud.rgb))
+        content["ply_file_path"] = "sparse_pc.ply"
+    else:
+        lens = true[0].intrinsics
+        frames = [
+            {"file_path": f"./images/{photo.path.stem}", "transform_matrix": frame["transform_matrix"]}
+            for photo, frame in zip(true, content["frames"], strict=True)
+        ]
+        content = {"camera_angle_x": 2.0 * math.atan(0.5 * lens.width_px / lens.fx_px), "frames": frames}
+    (folder / "transforms.json").write_text(json.dumps(content))
+    done = prepared(reflight, folder, out=tmp_path / "d")
+    assert ("the model has no points" in done.err) == (kind == "rendered")
+    assert "was turned" not in done.err
+    for mine, theirs in zip(read_photo_set(tmp_path / "d").photos, true, strict=True):
+        assert mine.name == theirs.name
+        assert np.allclose(mine.pose.position_enu_m, theirs.pose.position_enu_m)
+        assert np.allclose(mine.pose.cam_from_enu, theirs.pose.cam_from_enu)
+        assert mine.intrinsics.matrix == pytest.approx(theirs.intrinsics.matrix)
+    xyz, _ = read_points(tmp_path / "d" / "points.ply")
+    middle = (0.0, 0.0, 3.0)
+    assert np.linalg.norm(np.median(xyz, axis=0) - middle) < 2.5
+
+
+def test_distorted_frames_of_a_transforms_json_keep_their_numbers(tmp_path):
+    frame = {"file_path": "a.png", "transform_matrix": np.eye(4).tolist(), "k1": -0.1, "fl_x": 90.0}
+    common = {
+        "camera_model": "OPENCV",
+        "w": 100.0,
+        "h": 80.0,
+        "fl_x": 70.0,
+        "cx": 51.0,
+        "p1": 0.01,
+        "is_fisheye": False,
+    }
+    path = tmp_path / "transforms.json"
+    path.write_text(json.dumps({**common, "frames": [frame]}))
+    model, cloud = read_transforms(path)
+    (camera,), (image,) = model.cameras.values(), model.images.values()
+    assert cloud is None
+    assert (camera.model, camera.width_px, camera.height_px) == ("OPENCV", 100, 80)
+    assert camera.parameters == (90.0, 90.0, 51.0, 40.0, -0.1, 0.0, 0.01, 0.0)
+    assert image.name == (tmp_path / "a.png").as_posix()
+    assert np.allclose(image.cam_from_world, np.diag([1.0, -1.0, -1.0]))
+
+
+@pytest.mark.parametrize(
+    ("changed", "says"),
+    [
+        ({"camera_model": "OPENCV_FISHEYE"}, "camera model OPENCV_FISHEYE is not supported"),
+        ({"camera_model": "EQUIRECTANGULAR"}, "camera model EQUIRECTANGULAR is not supported"),
+        ({"is_fisheye": True}, "OPENCV_FISHEYE is not supported"),
+        ({"k4": 0.1}, "k4: expected 0"),
+        ({"fl_x": 0.0}, "says no focal length"),
+        ({"frames": []}, "has no frames"),
+        (
+            {"frames": [{"file_path": "a.png", "transform_matrix": [[2, 0, 0, 0], [0, 2, 0, 0], [0, 0, 2, 0]]}]},
+            "rotation",
+        ),
+        ({"frames": [{"file_path": "a.png", "transform_matrix": [[1, 0, 0]]}]}, "expected 4 x 4 numbers"),
+        ({"frames": [{"file_path": "a.png"}]}, "transform_matrix"),
+    ],
+)
+def test_a_transforms_json_that_cannot_be_used_is_refused_in_words(reflight, tmp_path, changed, says):
+    frames = [{"file_path": "a.png", "transform_matrix": np.eye(4).tolist()}]
+    content = {"w": 8, "h": 8, "fl_x": 9.0, "frames": frames} | changed
+    (tmp_path / "transforms.json").write_text(json.dumps(content))
+    assert cv2.imwrite(str(tmp_path / "a.png"), np.zeros((8, 8, 3), np.uint8))
+    assert says in reflight("prepare", tmp_path, "-o", tmp_path / "d").error
+
+
+def test_what_is_missing_is_said(reflight, tmp_path):
+    folder = tmp_path / "wall"
+    write_project(folder)
+    assert "found nothing" in reflight("prepare", tmp_path / "none", "-o", tmp_path / "d").error
+    (tmp_path / "bare").mkdir()
+    no_model = reflight("prepare", tmp_path / "bare", "-o", tmp_path / "d").error
+    assert "no transforms.json" in no_model
+    assert "--colmap" in no_model
+    assert "name it, or leave --refine out" in reflight("prepare", folder, "-o", tmp_path / "d", "--refine").error
+    (folder / "images" / "p01.png").unlink()
+    done = prepared(reflight, folder, out=tmp_path / "d")
+    assert "1 of 6 images of the COLMAP model are not in" in done.err
+    assert "p01.png" in done.err
+    assert "5 photos prepared" in done.out
+    (folder / "images").rename(folder / "photos")
+    error = reflight("prepare", folder, "-o", tmp_path / "e").error
+    assert "none of the 6 images of the model is in this folder, the first 'p00.png'" in error
+
+
+def test_pictures_that_were_made_smaller_get_smaller_cameras(reflight, tmp_path):
+    true = write_project(tmp_path / "wall")
+    for photo in true:
+        assert cv2.imwrite(str(photo.path), cv2.resize(cv2.imread(str(photo.path)), (20, 15)))
+    assert "6 of 6 photos have another size" in prepared(reflight, tmp_path / "wall", out=tmp_path / "d").err
+    assert read_photo_set(tmp_path / "d").photos[0].intrinsics == true[0].intrinsics.scaled(20, 15)
+
+
+def test_photos_that_say_their_pose_place_the_model(reflight, tmp_path):
+    write_photos(tmp_path / "photos")
+    true = pose_photos(read_photos(tmp_path / "photos").photos, site_model().site, tmp_path / "photos").photos
+    write_model(tmp_path / "model", in_enu(model_of(true), Similarity(0.1, ON_ITS_SIDE.rotation, np.ones(3))))
+    done = prepared(reflight, tmp_path / "photos", "--colmap", tmp_path / "model", out=tmp_path / "d")
+    assert "one unit of it" not in done.err
+    mine, theirs = apart(read_photo_set(tmp_path / "d").photos, sorted(true, key=lambda photo: photo.name))
+    assert np.abs(mine - theirs).max() < 0.5
+    assert json.loads((tmp_path / "d" / "dataset.json").read_text())["origin"]["lat_deg"] == pytest.approx(
+        22.3372, abs=1e-3
+    )
+
+
+@pytest.mark.slow
+def test_it_is_trained_scored_and_exported_without_further_ado(reflight, tmp_path):
+    write_project(tmp_path / "wall")
+    (tmp_path / "quick.toml").write_text("n_splats = 200\nmax_splats = 300\n")
+    settings = ("--preset", "smoke", "--settings", tmp_path / "quick.toml", "--iterations", 6)
+    model = tmp_path / "wall.model"
+    done = reflight("train", tmp_path / "wall", "-o", model, *settings)
+    assert done.status == 0, done.err
+    assert "unseen view" in done.out
+    assert f"next: app.py score {model} {tmp_path / 'wall.dataset'}" in done.err
+    scored = reflight("score", model, tmp_path / "wall.dataset", "--json")
+    assert scored.status == 0, scored.err
+    assert scored.json["psnr_db"] > 0.0
+    for kind, name in (("ply", "a.ply"), ("web", "web")):
+        exported = reflight("export", model, "--format", kind, "-o", tmp_path / name)
+        assert exported.status == 0, exported.err
