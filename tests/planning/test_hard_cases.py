@@ -248,7 +248,7 @@ def test_a_panel_alone_without_any_mesh_is_kept_away_from() -> None:
 def test_a_tower_of_thousands_of_panels_is_planned_and_checked() -> None:
     model = SCENES["tower"]()
     assert model.site.n_panels > 3600
-    planned = plan_flight(model, PlanRequest(time_budget_s=60.0))
+    planned = plan_flight(model, PlanRequest(time_budget_s=240.0))  # a quarter of it where nothing else runs
     coverage = planned.plan.coverage
     assert coverage.total == 36 * model.site.n_panels
     assert coverage.covered >= 0.98 * coverage.reachable_upper_bound

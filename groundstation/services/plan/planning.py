@@ -13,6 +13,7 @@ from groundstation.services.mission.proof import no_proof, proof_of_files, refus
 from groundstation.services.mission.readiness import UNKNOWN_DAY, FlightDay, preflight
 from groundstation.services.project.input_files import read_input_plan, read_input_site
 from groundstation.services.project.project_file import check_not_index
+from groundstation.services.units import per_cent
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.jit import is_compiled
@@ -198,7 +199,8 @@ def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
         return
     share = plan.coverage.covered / max(plan.coverage.reachable_upper_bound, 1)
     if share < wanted:
-        text = say("covers {:.2f} % of what is possible at most, {:g} % were asked for", 100.0 * share, 100.0 * wanted)
+        found = per_cent(plan.coverage.covered, plan.coverage.reachable_upper_bound, 2)
+        text = say("covers {:.2f} % of what is possible at most, {:g} % were asked for", found, 100.0 * wanted)
         if request.method != "greedy":
             advice = say("the method flies a pattern of its own")
             text = glue(text, "; ", advice)
