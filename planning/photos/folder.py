@@ -13,6 +13,7 @@ from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
+from planning.photos.jpeg import JPEG_START
 from planning.photos.metadata import read_photo
 from planning.photos.record import PhotoMetadata
 
@@ -42,7 +43,7 @@ class PhotoFolder:
 
 
 def read_photos(folder: Path, monitor: Monitor = QUIET, *, posed_elsewhere: bool = False) -> PhotoFolder:
-    """All JPEG photos in a folder and the folders in it.
+    """All JPEG photos in a folder and the folders in it: those that are called so, and those that are.
 
     Parameters
     ----------
@@ -67,7 +68,7 @@ def read_photos(folder: Path, monitor: Monitor = QUIET, *, posed_elsewhere: bool
                     findings.append(found)
                 else:
                     photos.append(found)
-    if not photos:
+    if not photos and not posed_elsewhere:
         raise InputError.say(
             "none of its {} photos can be read; the first: {}", len(paths), findings[0].message, place=folder
         )
@@ -100,7 +101,7 @@ def _paths(folder: Path, posed_elsewhere: bool) -> list[Path]:
     pictures = [path for path in files if path.suffix.lower() not in VIDEOS]
     if problems:
         raise InputError.say("cannot be read ({})", problems[0].strerror, place=problems[0].filename) from problems[0]
-    paths = [path for path in pictures if path.suffix.lower() in SUFFIXES]
+    paths = [path for path in pictures if path.suffix.lower() in SUFFIXES or _is_jpeg(path)]
     if paths or (posed_elsewhere and any(is_other_picture(path) for path in pictures)):
         return sorted(paths)
     if pictures:
@@ -119,6 +120,17 @@ def _paths(folder: Path, posed_elsewhere: bool) -> list[Path]:
             place=folder,
         )
     raise InputError.say("holds no .jpg photo; name the folder that was copied from the camera's card", place=folder)
+
+
+def _is_jpeg(path: Path) -> bool:
+    """Whether a picture of another name is a JPEG file nevertheless; what cannot be read is told where it is needed."""
+    if not is_other_picture(path):
+        return False
+    try:
+        with path.open("rb") as file:
+            return file.read(len(JPEG_START)) == JPEG_START
+    except OSError:
+        return False
 
 
 def is_other_picture(path: Path) -> bool:

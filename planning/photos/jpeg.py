@@ -1,5 +1,6 @@
 """The header of a JPEG file: picture size, and the EXIF and XMP parts in it (ITU-T T.81 annex B, XMP part 3, 1.1.3).
 
+Programs write PNG files under such names, so the content counts (PNG, third edition, 11.3.2.4; XMP part 3, 1.1.5).
 Only the header is read, and no picture is ever decoded: neither large dimensions nor hostile data cost anything.
 """
 
@@ -41,14 +42,35 @@ MAX_FILL_BYTES = 1024
 MAX_STRAY_BYTES = 65536
 """Between all segments of a header, which belong to none: some programs leave the rest of a longer part there."""
 
+JPEG_START, PNG_START = b"\xff\xd8\xff", b"\x89PNG\r\n\x1a\n"
+
+PNG_XMP = b"XML:com.adobe.xmp\0\0\0"
+"""Before a packet that is not compressed; language and translated keyword follow, empty."""
+
+MAX_CHUNKS, MAX_PNG_PART_BYTES = 2**17, 2**24
+"""Of a PNG file: a picture of 512 MiB may be in parts of 8 KiB; and of one part that is read."""
+
+KINDS = {JPEG_START: "JPEG", PNG_START: "PNG", b"II*\0": "TIFF", b"MM\0*": "TIFF", b"BM": "BMP", b"GIF8": "GIF"}
+BOXES = {b"heic": "HEIC", b"heix": "HEIC", b"mif1": "HEIC", b"msf1": "HEIC", b"avif": "AVIF"}
+LFS_POINTER = b"version https://git-lfs"
+
 CHUNK_BYTES = 65536
 
 MAX_SEARCHED_BYTES = 64 * 2**20
 """From the file's end on; more than any photo has."""
 
 
+def kind_of(start: bytes) -> str | None:
+    """What kind of picture a file is by its first 12 bytes or more; None for none that is known."""
+    if start.startswith(b"RIFF") and start[8:12] == b"WEBP":
+        return "WebP"
+    if start[4:8] == b"ftyp":
+        return BOXES.get(start[8:12])
+    return next((kind for head, kind in KINDS.items() if start.startswith(head)), None)
+
+
 @dataclass(frozen=True, slots=True)
-class JpegHeader:
+class PhotoHeader:
     """What the header holds.
 
     Parameters
@@ -70,13 +92,13 @@ class JpegHeader:
     is_complete: bool
 
 
-def read_header(path: Path) -> JpegHeader:
-    """Header of a JPEG file.
+def read_header(path: Path) -> PhotoHeader:
+    """Header of a JPEG file, or of a PNG file, whatever its name.
 
     Raises
     ------
     InputError
-        The file is missing, unreadable, no JPEG, or its header is cut off.
+        The file is missing, unreadable, neither of both, or its header is cut off.
     """
     with open_input_file(path, PHOTO_FILE) as file:
         return _header(file, str(path))
@@ -93,9 +115,13 @@ class _Parts:
     n_extended_bytes: int = 0
 
 
-def _header(file: BinaryIO, label: str) -> JpegHeader:
-    if file.read(2) != bytes((0xFF, SOI)):
-        raise InputError.say("is no JPEG file; only .jpg photos as the camera wrote them can be read", place=label)
+def _header(file: BinaryIO, label: str) -> PhotoHeader:
+    start = file.read(len(LFS_POINTER))
+    if start.startswith(PNG_START):
+        return _png_header(file, label)
+    if not start.startswith(bytes((0xFF, SOI))):
+        raise _no_photo(start, label)
+    file.seek(2)
     parts = _Parts()
     for marker, length in _segments(file, label):
         if marker in SIZE_MARKERS and parts.size_px is None:
@@ -115,7 +141,52 @@ def _header(file: BinaryIO, label: str) -> JpegHeader:
     if parts.size_px is None:
         raise InputError.say("the JPEG file holds no picture; copy it from the card again", place=label)
     packets = tuple(packet for packet in (parts.xmp, _extended(parts)) if packet is not None)
-    return JpegHeader(*parts.size_px, parts.exif, packets, _has_end(file))
+    return PhotoHeader(*parts.size_px, parts.exif, packets, _has_end(file))
+
+
+def _no_photo(start: bytes, label: str) -> InputError:
+    """The error about a file that has the name of a photo, and is none."""
+    kind = kind_of(start)
+    if kind is not None:
+        return InputError.say(
+            "is a picture of the kind {} with the name of a JPEG file; save it as JPEG, with all that the camera wrote "
+            "into it",
+            kind,
+            place=label,
+        )
+    if start.startswith(LFS_POINTER):
+        return InputError.say(
+            "is a pointer of Git LFS in the place of the photo; get it by 'git lfs pull'", place=label
+        )
+    return InputError.say("is no JPEG file; only .jpg photos as the camera wrote them can be read", place=label)
+
+
+def _png_header(file: BinaryIO, label: str) -> PhotoHeader:
+    file.seek(len(PNG_START))
+    size_px: tuple[int, int] | None = None
+    exif: bytes | None = None
+    xmp: bytes | None = None
+    is_complete = False
+    for _ in range(MAX_CHUNKS):
+        head = file.read(8)
+        if len(head) < 8:
+            break
+        length, kind, at = int.from_bytes(head[:4], "big"), head[4:], file.tell()
+        if kind == b"IEND":
+            is_complete = True
+            break
+        if kind == b"IHDR" and size_px is None:
+            sides = _read(file, 8, label)
+            size_px = int.from_bytes(sides[:4], "big"), int.from_bytes(sides[4:], "big")
+        elif kind == b"eXIf" and exif is None and length <= MAX_PNG_PART_BYTES:
+            exif = _read(file, length, label)
+        elif kind == b"iTXt" and xmp is None and length <= MAX_PNG_PART_BYTES:
+            text = _read(file, length, label)
+            xmp = text[len(PNG_XMP) :].lstrip(b"\0") if text.startswith(PNG_XMP) else None
+        file.seek(at + length + 4)
+    if size_px is None or 0 in size_px:
+        raise InputError.say("the PNG file holds no picture; copy it from the card again", place=label)
+    return PhotoHeader(*size_px, exif, () if xmp is None else (xmp,), is_complete)
 
 
 def _segments(file: BinaryIO, label: str) -> Iterator[tuple[int, int]]:

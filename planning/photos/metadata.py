@@ -26,7 +26,7 @@ from planning.base.errors import InputError
 from planning.base.files import HostileXml, parse_xml
 from planning.geo.frames import wrap_heading_deg
 from planning.photos.exif import Tag, Value, read_exif
-from planning.photos.jpeg import JpegHeader, read_header
+from planning.photos.jpeg import PhotoHeader, read_header
 from planning.photos.record import RTK_FIXED, Dewarp, PhotoMetadata
 
 RDF = "http://www.w3.org/1999/02/22-rdf-syntax-ns#"
@@ -259,12 +259,13 @@ def read_photo(path: Path) -> PhotoMetadata:
     Raises
     ------
     InputError
-        The file cannot be read, is no JPEG, or its header is damaged. A photo without any metadata is none of that.
+        The file cannot be read, is neither JPEG nor PNG, or its header is damaged. A photo without any metadata is none
+        of that.
     """
     return _metadata(path, read_header(path))
 
 
-def _metadata(path: Path, header: JpegHeader) -> PhotoMetadata:
+def _metadata(path: Path, header: PhotoHeader) -> PhotoMetadata:
     tags = read_exif(header.exif or b"")
     properties: Properties = {}
     for packet in header.xmp:

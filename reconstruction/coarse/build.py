@@ -67,6 +67,7 @@ from reconstruction.colmap.georeference import Similarity, in_enu, posed_photos
 from reconstruction.colmap.pycolmap_run import (
     LEAST_PHOTOS,
     ColmapRun,
+    FoundLens,
     Pair,
     RefineParameters,
     StartPhoto,
@@ -129,8 +130,8 @@ class CoarseModel:
         Number of pairs that were matched, of how many there are.
     seconds
         Of each step, by its name.
-    decision
-        Whether walls without points were looked for in the photos.
+    decision, lens_decision
+        Whether walls without points were looked for in the photos; and calibrated lenses found anew.
     """
 
     photos: tuple[PosedPhoto, ...]
@@ -145,6 +146,7 @@ class CoarseModel:
     pairs: tuple[int, int]
     seconds: dict[str, float]
     decision: Decision
+    lens_decision: Decision
     findings: tuple[Finding, ...]
 
 
@@ -188,7 +190,7 @@ def build_coarse(
     scratch = kept / "scratch"
     shutil.rmtree(scratch, ignore_errors=True)
     scratch.mkdir()
-    placed, model, error_px, lately = _in_place(run, free, fixed, taken, stated, scratch, parameters)
+    placed, model, error_px, lens_decision, lately = _in_place(run, free, fixed, taken, stated, scratch, parameters)
     shutil.rmtree(scratch, ignore_errors=True)
     clock.lap("place")
     cloud = believed(cloud_of(model))
@@ -229,6 +231,7 @@ def build_coarse(
         (len(pairs), n * (n - 1) // 2),
         clock.laps,
         decision,
+        lens_decision,
         findings,
     )
 
@@ -329,8 +332,8 @@ def _in_place(
     stated: Stated,
     scratch: Path,
     parameters: CoarseParameters,
-) -> tuple[Placed, ColmapModel, float, tuple[Finding, ...]]:
-    """The model in the provisional frame, adjusted with the positions where they say enough."""
+) -> tuple[Placed, ColmapModel, float, Decision, tuple[Finding, ...]]:
+    """The model in the provisional frame, adjusted with the positions where they say enough; and its lens, or why."""
     if free is None:
         free = placed_by_receivers(run, ColmapModel(run.cameras(), {}), _receivers(taken), (), fixed, scratch)
         if free is None:
@@ -344,6 +347,7 @@ def _in_place(
     model = as_model(free, scratch / "placed")
     placed, findings = _place(model, taken, stated, parameters)
     lately: tuple[Finding, ...] = ()
+    decision = decide(FoundLens(), None)
     if placed.scale_from == "positions" and n_used >= LEAST_PHOTOS:
         if fixed:
             free, decision = run.choose_lenses(free, fixed, scratch / "lenses")
@@ -361,7 +365,7 @@ def _in_place(
             model = as_model(free, scratch / "added")
             placed, findings = _place(model, taken, stated, parameters)
             model = in_enu(model, placed.enu_from_model)
-    return placed, model, float(free.compute_mean_reprojection_error()), (*findings, *lately)
+    return placed, model, float(free.compute_mean_reprojection_error()), decision, (*findings, *lately)
 
 
 def _measured_of(model: ColmapModel, taken: CoarseInputs) -> list[Measured]:

@@ -32,7 +32,7 @@ from reconstruction.colmap.georeference import Similarity
 from reconstruction.dataset.layers import IN_FRONT_M, Scene, draw_layers, facing, normals_to_16_bit, straightened
 from reconstruction.dataset.records import ColouredPoints, start_points, write_records
 from reconstruction.dataset.refined_mesh import RefineParameters, grown_corners, refine_mesh
-from reconstruction.photos.decode import PICTURE_FILE, check_whole, decoded
+from reconstruction.photos.decode import PICTURE_FILE, check_whole, decoded, is_named_rightly
 
 Array = NDArray[np.float64]
 
@@ -288,7 +288,8 @@ def _photo(
             "the picture has {} pixels, its camera {} x {}; it was left out", found, lens.width_px, lens.height_px
         )
         return Finding(Severity.WARNING, "photo-size", text, photo.name)
-    straight, is_changed = replace(photo, intrinsics=lens.straight()), is_turned
+    straight = replace(photo, intrinsics=lens.straight())
+    is_changed = is_turned or not is_named_rightly(stored, photo.path)
     target = folder / "images" / photo.name
     target.parent.mkdir(parents=True, exist_ok=True)
     if straighten and not lens.is_straight:

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import struct
 import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Literal
 
 import cv2
@@ -19,7 +21,7 @@ from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, read_input_file
 from planning.base.jit import inline, kernel
 from planning.base.messages import say
-from planning.photos.jpeg import MAX_STRAY_BYTES, PHOTO_FILE
+from planning.photos.jpeg import JPEG_START, MAX_STRAY_BYTES, PHOTO_FILE, PNG_START, kind_of
 from planning.photos.record import PhotoMetadata
 
 # What is wrong with a picture is said in an error, and once.
@@ -28,14 +30,14 @@ cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
 Scale = Literal[1, 2, 4, 8]
 """The picture is decoded at one part in so many of its width and height."""
 
-FLAGS = {
+FLAGS: dict[Scale, int] = {
     1: cv2.IMREAD_GRAYSCALE,
     2: cv2.IMREAD_REDUCED_GRAYSCALE_2,
     4: cv2.IMREAD_REDUCED_GRAYSCALE_4,
     8: cv2.IMREAD_REDUCED_GRAYSCALE_8,
 }
 
-COLOUR_FLAGS = {
+COLOUR_FLAGS: dict[Scale, int] = {
     1: cv2.IMREAD_COLOR,
     2: cv2.IMREAD_REDUCED_COLOR_2,
     4: cv2.IMREAD_REDUCED_COLOR_4,
@@ -51,7 +53,16 @@ LARGE_PIXELS = 64 * 10**6
 
 PICTURE_FILE = FileLimit(say("a picture"), 512 * MIB)
 
-JPEG_START, PNG_START = b"\xff\xd8\xff", b"\x89PNG\r\n\x1a\n"
+NAMED = {
+    ".jpg": "JPEG",
+    ".jpeg": "JPEG",
+    ".png": "PNG",
+    ".tif": "TIFF",
+    ".tiff": "TIFF",
+    ".webp": "WebP",
+    ".bmp": "BMP",
+}
+"""Kinds of pictures by the endings of their names."""
 
 _TIFF = {b"II*\0": "<", b"MM\0*": ">"}
 """First bytes, and the order of those of numbers."""
@@ -68,12 +79,12 @@ def grey_picture(photo: PhotoMetadata, scale: Scale = 1) -> NDArray[np.uint8]:
     InputError
         The file has gone, is damaged, or claims to hold more than any camera's picture.
     """
-    return _picture(photo, FLAGS[scale], scale)
+    return _picture(photo, FLAGS, scale)
 
 
 def colour_picture(photo: PhotoMetadata, scale: Scale = 1) -> NDArray[np.uint8]:
     """The picture, shape (h, w, 3), blue, green, red; scale and errors as in `grey_picture`."""
-    return _picture(photo, COLOUR_FLAGS[scale], scale)
+    return _picture(photo, COLOUR_FLAGS, scale)
 
 
 def whole_content(photo: PhotoMetadata) -> bytes:
@@ -95,10 +106,18 @@ def whole_content(photo: PhotoMetadata) -> bytes:
     return content
 
 
-def _picture(photo: PhotoMetadata, flag: int, scale: Scale) -> NDArray[np.uint8]:
+def is_named_rightly(content: bytes, path: Path) -> bool:
+    """Whether a file is of the kind of picture that its name says."""
+    return kind_of(content[:12]) == NAMED.get(path.suffix.lower())
+
+
+def _picture(photo: PhotoMetadata, flags: Mapping[Scale, int], scale: Scale) -> NDArray[np.uint8]:
     content, place = whole_content(photo), str(photo.path)
-    picture = decoded(content, flag | cv2.IMREAD_IGNORE_ORIENTATION, place)
+    is_jpeg = content.startswith(JPEG_START)
+    picture = decoded(content, flags[scale if is_jpeg else 1] | cv2.IMREAD_IGNORE_ORIENTATION, place)
     expected = -(-photo.height_px // scale), -(-photo.width_px // scale)
+    if not is_jpeg and picture.shape[:2] == (photo.height_px, photo.width_px):
+        picture = cv2.resize(picture, expected[::-1], interpolation=cv2.INTER_AREA)  # only JPEG is decoded at a part
     if picture.shape[:2] != expected:
         raise InputError(
             say(

@@ -3,6 +3,7 @@
 import json
 import math
 import shutil
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from planning.photos.folder import read_photos
+from planning.photos.jpeg import kind_of
 from reconstruction.colmap.folder import read_model, write_model
 from reconstruction.colmap.georeference import Similarity, in_enu, model_of
 from reconstruction.colmap.record import ColmapPoints
@@ -40,7 +42,7 @@ def write_project(folder, kind="bin", moved=ON_ITS_SIDE, points=True):
         assert cv2.imwrite(str(photo.path), shown[..., ::-1])
     model = model_of(photos)
     if points:
-        model = type(model)(model.cameras, model.images, points_on_glass())
+        model = replace(model, points=points_on_glass())
     write_model(folder / "sparse" / "0", in_enu(model, moved), kind)
     return photos
 
@@ -210,6 +212,26 @@ def test_pictures_that_were_made_smaller_get_smaller_cameras(reflight, tmp_path)
         assert cv2.imwrite(str(photo.path), cv2.resize(cv2.imread(str(photo.path)), (20, 15)))
     assert "6 of 6 photos have another size" in prepared(reflight, tmp_path / "wall", out=tmp_path / "d").err
     assert read_photo_set(tmp_path / "d").photos[0].intrinsics == true[0].intrinsics.scaled(20, 15)
+
+
+def test_pictures_of_another_kind_than_their_name_says_are_written_as_it_says(reflight, tmp_path):
+    folder = tmp_path / "wall"
+    true = write_project(folder)
+    model = read_model(folder / "sparse" / "0")
+    shutil.rmtree(folder / "sparse")
+    images = {number: replace(image, name=f"{image.name[:-4]}.jpg") for number, image in model.images.items()}
+    images[1] = replace(images[1], name="p00.png")
+    write_model(folder / "sparse" / "0", replace(model, images=images))
+    for photo in true[1:]:
+        photo.path.rename(photo.path.with_suffix(".jpg"))
+    as_jpeg = cv2.imencode(".jpg", cv2.imread(str(true[0].path)))[1].tobytes()
+    true[0].path.write_bytes(as_jpeg)
+    prepared(reflight, folder, out=tmp_path / "d")
+    data = read_photo_set(tmp_path / "d")
+    assert [photo.name for photo in data.photos] == ["p00.png", *(f"p{number:02d}.jpg" for number in range(1, N))]
+    kinds = [kind_of(photo.path.read_bytes()) for photo in data.photos]
+    assert kinds == ["PNG", *["JPEG"] * (N - 1)]
+    assert (cv2.imread(str(data.photos[0].path)) == cv2.imdecode(np.frombuffer(as_jpeg, np.uint8), 1)).all()
 
 
 def test_photos_that_say_their_pose_place_the_model(reflight, tmp_path):

@@ -16,7 +16,7 @@ from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.files import check_folder_name
 from planning.base.findings import Finding, Severity
-from planning.base.json_file import read_json, write_atomically, write_together
+from planning.base.json_file import plain_values, read_json, write_atomically, write_together
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.geo.mesh import TriangleMesh, box_mesh, empty_mesh, join, ply_bytes
@@ -245,6 +245,7 @@ def coarse_report(coarse: CoarseModel) -> dict[str, Any]:
             "decided_by": coarse.decision.decided_by,
             "walls_without_points_percent": round(coarse.decision.size, 2),
         },
+        "effects": plain_values((coarse.decision, coarse.lens_decision)),
         "pairs": coarse.pairs[0],
         "of_pairs": coarse.pairs[1],
         "reprojection_px": round(coarse.reprojection_px, 4),

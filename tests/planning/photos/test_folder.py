@@ -1,7 +1,10 @@
 """Folders of photos: order, broken files, progress."""
 
+import zlib
 from datetime import datetime
 
+import cv2
+import numpy as np
 import pytest
 
 from planning.base.errors import InputError, OperationCancelled
@@ -49,6 +52,61 @@ def test_broken_files_are_told_of_and_left_out(tmp_path):
         ("photo-unreadable", str(tmp_path / "broken.jpg")),
         ("photo-cut-off", str(tmp_path / "cut.jpg")),
     }
+
+
+PNG = cv2.imencode(".png", np.full((30, 40, 3), 90, np.uint8))[1].tobytes()
+HEAD_END = 8 + 8 + 13 + 4
+"""Of a PNG file: signature and IHDR."""
+
+
+def chunk(kind, content):
+    return len(content).to_bytes(4, "big") + kind + content + zlib.crc32(kind + content).to_bytes(4, "big")
+
+
+@pytest.mark.parametrize("place", ["before the picture", "behind it"])
+def test_a_png_that_is_called_jpg_is_read_by_its_content(tmp_path, place):
+    exif = exif_part(photo={0x9003: "2024:05:01 10:00:07"})[len(b"Exif\0\0") :]
+    xmp = b"XML:com.adobe.xmp" + bytes(5) + packet({"RelativeAltitude": "+12.5"}).encode()
+    parts = chunk(b"eXIf", exif) + chunk(b"iTXt", xmp)
+    at = HEAD_END if place == "before the picture" else len(PNG) - 12
+    save(tmp_path / "a.jpg", PNG[:at] + parts + PNG[at:])
+    save(tmp_path / "b.jpg", PNG[:-12])
+    whole, cut = read_photos(tmp_path).photos
+    assert (whole.width_px, whole.height_px, whole.is_complete) == (40, 30, True)
+    assert (whole.taken_at, whole.height_above_takeoff_m) == (datetime(2024, 5, 1, 10, 0, 7), 12.5)
+    assert (cut.width_px, cut.is_complete) == (40, False)
+
+
+def test_a_jpeg_that_is_called_otherwise_is_a_photo(tmp_path):
+    save(tmp_path / "a.png", shot(7))
+    save(tmp_path / "b.png", PNG)
+    (photo,) = read_photos(tmp_path).photos
+    assert (photo.path.name, photo.taken_at.second) == ("a.png", 7)
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (cv2.imencode(".webp", np.zeros((8, 8, 3), np.uint8))[1].tobytes(), "of the kind WebP with the name of a JPEG"),
+        (cv2.imencode(".tif", np.zeros((8, 8, 3), np.uint8))[1].tobytes(), "of the kind TIFF"),
+        (cv2.imencode(".bmp", np.zeros((8, 8, 3), np.uint8))[1].tobytes(), "of the kind BMP"),
+        (b"\0\0\0\x18ftypheic\0\0\0\0mif1heic", "of the kind HEIC"),
+        (b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n", "'git lfs pull'"),
+        (b"<!DOCTYPE html>", "is no JPEG file"),
+        (b"", "is no JPEG file"),
+    ],
+)
+def test_what_a_file_is_that_is_called_a_photo_is_said(tmp_path, content, says):
+    save(tmp_path / "a.jpg", content)
+    with pytest.raises(InputError, match=says):
+        read_photos(tmp_path)
+
+
+@pytest.mark.parametrize("at", [1, 7, 8, 15, 16, 20, 23])
+def test_a_png_that_ends_in_its_header_is_refused_in_words(tmp_path, at):
+    save(tmp_path / "a.jpg", PNG[:at])
+    with pytest.raises(InputError, match=r"copy it from the card again|no JPEG file"):
+        read_photos(tmp_path)
 
 
 def test_what_is_no_folder_of_photos_is_refused(tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 
@@ -37,6 +38,10 @@ def test_poses_meet_the_reference_and_nothing_is_done_twice(door, tmp_path):
     photos, reference = door
     made = coarse_files(CoarseRequest(photos, tmp_path / "out", size_px=800))
     assert made.report["registered"] == 12
+    effects = {effect["effect"]: effect for effect in json.loads(json.dumps(made.report["effects"]))}
+    assert (effects["dense depth"]["on"], effects["dense depth"]["decided_by"]) == (made.decision.on, "scene")
+    lens = effects["lens found from the photos"]
+    assert (lens["on"], lens["reason"]) == (False, "it was not looked for")  # none is stated
     truth = {image.name: image for image in read_model(reference).images.values()}
     found = {image.name: image for image in read_model(tmp_path / "out" / "sparse" / "0").images.values()}
     names = sorted(truth)
@@ -94,7 +99,7 @@ def test_too_few_photos_are_refused_in_one_line(door, tmp_path):
 TAKEN_OFF_AMSL_M, FLOWN_M, APART_M = 520.0, 30.0, 8.0
 
 
-def write_as_flown(photos, reference, folder):
+def write_as_flown(photos, reference, folder, **properties):
     """The photos as of an aircraft without RTK: positions, altitudes and heights above take-off; where each was."""
     images = {image.name: image for image in read_model(reference).images.values()}
     centres = np.array([image.centre_world for image in images.values()])
@@ -105,7 +110,7 @@ def write_as_flown(photos, reference, folder):
     lat, lon, _ = geodetic_from_enu(origin, places)
     for name, place, *at in zip(images, places.tolist(), lat.tolist(), lon.tolist(), strict=True):
         exif = exif_part({0x010F: "DJI", 0x0110: "FC300S"}, {}, gps_tags(*at, TAKEN_OFF_AMSL_M + place[2]))
-        xmp = packet({"RelativeAltitude": f"{place[2]:+.2f}"})
+        xmp = packet({"RelativeAltitude": f"{place[2]:+.2f}", **properties})
         save(folder / name, jpeg(exif, xmp, base=(photos / name).read_bytes()))
     return dict(zip(images, geodetic_from_enu(origin, places).ellipsoid_height_m, strict=True))
 
@@ -121,3 +126,16 @@ def test_a_flight_without_rtk_lies_as_high_as_its_photos_say(door, tmp_path):
     off_m = heights - [truth[image.name] for image in images]
     assert len(off_m) >= 10
     assert np.abs(off_m).max() < 1.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("asked", "decided_by"), [("on", "user"), ("auto", "scene")])
+def test_the_report_says_whether_a_stated_lens_was_found_anew(door, tmp_path, asked, decided_by):
+    photos, reference = door
+    (camera,) = read_model(reference).cameras.values()
+    write_as_flown(photos, reference, tmp_path / "flown", CalibratedFocalLength=f"{1.2 * camera.parameters[0]:.1f}")
+    made = coarse_files(CoarseRequest(tmp_path / "flown", tmp_path / "out", size_px=600, find_lens=asked))
+    lens = made.report["effects"][1]
+    assert (lens["effect"], lens["decided_by"]) == ("lens found from the photos", decided_by)
+    assert lens["on"] == (asked == "on" or lens["size"] > lens["tolerance"])
+    assert any(found.code == "lens-chosen" for found in made.findings)

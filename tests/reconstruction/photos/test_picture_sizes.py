@@ -11,7 +11,8 @@ import pytest
 
 from planning.base.errors import InputError
 from planning.photos.jpeg import read_header
-from reconstruction.photos.decode import MAX_PIXELS, decoded, picture_size
+from planning.photos.metadata import read_photo
+from reconstruction.photos.decode import MAX_PIXELS, colour_picture, decoded, grey_picture, picture_size
 
 ENDINGS = (".jpg", ".png", ".webp", ".tif", ".bmp")
 
@@ -99,3 +100,11 @@ def test_damaged_pictures_are_decoded_or_refused(ending):
         except InputError:
             continue
         assert 0 < found.size <= 3 * MAX_PIXELS
+
+
+@pytest.mark.parametrize("scale", [1, 2, 4, 8])
+def test_a_png_that_is_called_jpg_is_made_smaller_like_a_jpeg(tmp_path, scale):
+    (tmp_path / "a.jpg").write_bytes(coded(".png"))
+    photo = read_photo(tmp_path / "a.jpg")
+    assert grey_picture(photo, scale).shape == (-(-23 // scale), -(-37 // scale))
+    assert colour_picture(photo, scale).shape == (-(-23 // scale), -(-37 // scale), 3)
