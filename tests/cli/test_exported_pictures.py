@@ -81,7 +81,7 @@ def test_the_page_shows_what_the_program_shows(trained, tmp_path, has_webgpu):
             camera, shown = browser.run("return reflight.camera()"), browser.pixels() / 255.0
             own, is_off_glass = own_picture(model, camera)
             assert own.shape == shown.shape
-            assert psnr(shown[is_off_glass], own[is_off_glass]) > 40.0
+            assert psnr(shown[is_off_glass], own[is_off_glass]) > (40.0 if has_webgpu else 38.0)
             # The sky is not the same all around: turned, this scene's is far from it.
             other, is_off = own_picture(model, {**camera, "heading": heading + 180.0})
             assert pitch > 80.0 or psnr(other[is_off & is_off_glass], own[is_off & is_off_glass]) < 32.0

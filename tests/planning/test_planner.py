@@ -320,7 +320,8 @@ def test_stopped_at_once_a_plan_comes_out_all_the_same(name: str) -> None:
 def test_stopping_half_way_keeps_what_was_found() -> None:
     stop, trace = StopRequest(), Trace()
     trace.observer = lambda _point: stop.request() if len(trace.points) >= 8 else None
-    request = PlanRequest(n_views=12, constraints=NEAR, greedy=replace(FEW, improve=True), time_budget_s=600.0)
+    greedy = replace(FEW, improve=True, objective="sections")
+    request = PlanRequest(n_views=12, constraints=NEAR, greedy=greedy, time_budget_s=600.0)
     started = time.process_time()
     planned = plan_flight(kiosk(), request, stop=stop, trace=trace)
     assert time.process_time() - started < 40.0
