@@ -60,7 +60,8 @@ from planning.tradeoff.tours import (
 )
 from planning.viewpoints.prepare import coverage_model
 
-BASE = PlanRequest(n_views=12, greedy=GreedyParameters(n_candidates=300, improve=False), time_budget_s=20.0)
+GREEDY = GreedyParameters(n_candidates=300, improve=False, objective="sections")
+BASE = PlanRequest(n_views=12, greedy=GREEDY, time_budget_s=20.0)
 NO_NOISE = Noise(0.0)
 
 
