@@ -606,7 +606,7 @@ def _of_own_frame(scale: float, tilt_deg: float, shift: Array) -> tuple[Finding,
         text = say("the model was turned by {:.0f} degrees, so that its cameras stand upright", tilt_deg)
         findings.append(Finding(Severity.NOTE, "model-turned", text, "", tilt_deg, None, "deg"))
     if shift.any():
-        text = say("the model was moved by {} m, which brings it near zero", tuple(shift.tolist()))
+        text = say("the model was moved by {:m}, which brings it near zero", tuple(shift.tolist()))
         findings.append(Finding(Severity.NOTE, "model-moved", text, "", float(np.linalg.norm(shift)), None, "m"))
     return tuple(findings)
 

@@ -377,7 +377,7 @@ FileKind = Literal["bin", "txt"]
 
 FILE_NAMES = ("cameras", "images", "points3D", "rigs", "frames")
 
-USUAL_PLACES = ("sparse/0", "sparse", "0", "colmap/sparse/0", "dense/sparse", "dense/0/sparse")
+USUAL_PLACES = ("sparse/0", "sparse", "0", "colmap/sparse/0", "dense/sparse", "dense/0/sparse", "")
 """Of models, in folders of COLMAP, of nerfstudio and of data sets for splats."""
 
 COLMAP_FILE, MAX_LINES = FileLimit("a file of a COLMAP model", 8192 * MIB), 5_000_000

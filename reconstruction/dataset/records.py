@@ -18,7 +18,7 @@ from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.files import read_input_file
 from planning.base.json_file import read_json, to_record, write_atomically
-from planning.base.messages import say
+from planning.base.messages import about, say
 from planning.geo.mesh import TriangleMesh
 from planning.geo.ray_casting import RayCaster
 from planning.photos.folder import OTHER_PICTURES, SUFFIXES
@@ -389,4 +389,4 @@ def _intrinsics(content: _Transforms, frame: _Frame, picture: Path, place: str) 
             *(number("cx", 0.5 * width), number("cy", 0.5 * height), distortion),
         )
     except ValueError as error:
-        raise InputError(say("{}", error, place=place)) from error
+        raise InputError(about(place, error)) from error

@@ -195,6 +195,8 @@ def test_what_is_missing_is_said(reflight, tmp_path):
     no_model = reflight("prepare", tmp_path / "bare", "-o", tmp_path / "d").error
     assert "no transforms.json" in no_model
     assert "--colmap" in no_model
+    in_its_place = reflight("prepare", folder / "images", folder / "sparse" / "0", "-o", tmp_path / "d").error
+    assert "no site; name it with --colmap" in in_its_place
     assert "name it, or leave --refine out" in reflight("prepare", folder, "-o", tmp_path / "d", "--refine").error
     (folder / "images" / "p01.png").unlink()
     done = prepared(reflight, folder, out=tmp_path / "d")
@@ -239,6 +241,7 @@ def test_photos_that_say_their_pose_place_the_model(reflight, tmp_path):
     true = pose_photos(read_photos(tmp_path / "photos").photos, site_model().site, tmp_path / "photos").photos
     write_model(tmp_path / "model", in_enu(model_of(true), Similarity(0.1, ON_ITS_SIDE.rotation, np.ones(3))))
     done = prepared(reflight, tmp_path / "photos", "--colmap", tmp_path / "model", out=tmp_path / "d")
+    assert "distortion of the lens is not known" not in done.err  # the model knows it
     assert "one unit of it" not in done.err
     mine, theirs = apart(read_photo_set(tmp_path / "d").photos, sorted(true, key=lambda photo: photo.name))
     assert np.abs(mine - theirs).max() < 0.5

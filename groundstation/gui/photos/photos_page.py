@@ -598,7 +598,10 @@ class PhotosPage(QObject):
     def _where_it_stands(self) -> str:
         controller = self.controller
         if self._context.document.site is None:
-            return self.tr("Open or import a site first: photos are placed on it.")
+            return self.tr(
+                "Open or import a site first: photos are placed on it. “From photos alone” makes one. Photos with a "
+                "COLMAP or nerfstudio model are trained without one, on the Reconstruct tab."
+            )
         if controller.intake is None:
             return self.tr("Read the photos of the flight.")
         if controller.draft is None:

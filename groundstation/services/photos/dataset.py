@@ -15,6 +15,7 @@ from groundstation.services.photos.poses import (
     RefineRequest,
     photos_alone,
     photos_with_poses,
+    poses_within,
     refined_summary,
 )
 from groundstation.services.project.input_files import read_input_site
@@ -69,6 +70,8 @@ def prepare_files(
     InputError
         Photos, site or COLMAP model cannot be used, poses cannot be refined, or the data set cannot be written.
     """
+    if site is not None and poses_within(site) is not None:
+        raise InputError(say("is a folder with a model of poses, and no site; name it with --colmap", place=site))
     if site is None:
         if refine is not None:
             raise InputError(say("poses are refined in the frame of a site; name it, or leave --refine out"))

@@ -503,7 +503,7 @@ def refined_poses(
 def findings_that_hold(posed: PhotoSet, better: ChosenPoses) -> tuple[Finding, ...]:
     """Findings about the photos' own cameras that hold for these poses.
 
-    Refined lenses are known, and photos that a COLMAP model has a pose of do not lack one.
+    Lenses of a model, and refined ones, are known, and photos that a COLMAP model has a pose of do not lack one.
     """
     has_pose = {photo.name for photo in better.photos}
     still = [photo for photo in posed.unposed if photo.name not in has_pose]
@@ -511,7 +511,9 @@ def findings_that_hold(posed: PhotoSet, better: ChosenPoses) -> tuple[Finding, .
     if len(still) < len(posed.unposed):
         others = (finding for finding in findings if finding.code != UNPOSED)
         findings = (*others, *unposed_findings(still, len(posed.photos) + len(posed.unposed)))
-    if better.refined is None or better.refined.n_refined < better.refined.n_photos:
+    stated = {photo.name: photo.intrinsics for photo in posed.photos}
+    is_refined = better.refined is not None and better.refined.n_refined == better.refined.n_photos
+    if not is_refined and any(stated.get(photo.name) == photo.intrinsics for photo in better.photos):
         return findings
     return tuple(finding for finding in findings if finding.code != LENS_UNKNOWN)
 
