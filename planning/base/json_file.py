@@ -394,13 +394,18 @@ def check_output(path: Path, sources: Iterable[Path] = ()) -> None:
     _check_place(path)
     folder = real_path(path).parent
     # Files are made anew in their folder; devices and pipes are written into.
-    if (path.is_file() or not path.exists()) and not os.access(folder, os.W_OK | os.X_OK):
+    if not is_device(path) and not os.access(folder, os.W_OK | os.X_OK):
         raise InputError.say(
             "cannot be written: the folder '{}' is write-protected; name a file in another one", folder, place=path
         )
     for source in sources:
         if path.exists() and source.exists() and path.samefile(source):
             raise InputError.say("would replace {}, which it is made from; name another file", source, place=path)
+
+
+def is_device(path: Path) -> bool:
+    """Whether what is written there goes to a device or a pipe, which keeps no file that others could stand beside."""
+    return path.exists() and not path.is_file()
 
 
 def _check_place(path: Path) -> None:
@@ -429,7 +434,7 @@ def write_atomically(path: Path, content: bytes, *, is_lasting: bool = True) -> 
     """
     _check_place(path)
     try:
-        if path.exists() and not path.is_file():
+        if is_device(path):
             path.write_bytes(content)
             return
         with part_file(real_path(path), is_lasting=is_lasting) as part:
@@ -449,7 +454,7 @@ def write_together(files: Mapping[Path, bytes]) -> None:
     targets = [real_path(path) for path in files]
     for path in files:
         _check_place(path)
-    if any(target.exists() and not target.is_file() for target in targets):
+    if any(map(is_device, targets)):
         for path, content in files.items():
             write_atomically(path, content)
         return

@@ -1,7 +1,9 @@
 """`export`: every format for every aircraft, one file a sortie, checked files or none."""
 
 import json
+import os
 import shutil
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -43,6 +45,23 @@ def plans_by_profile(tmp_path_factory):
     for profile_id in profiles():
         plan_site(site, PlanRequest(n_views=3, greedy=QUICK, profile_id=profile_id), folder / f"{profile_id}.json")
     return folder
+
+
+@pytest.mark.skipif(os.name == "nt", reason="pipes of a POSIX system")
+def test_missions_and_plans_go_into_pipes_with_nothing_beside_them(reflight, pane, tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with ThreadPoolExecutor(1) as pool:
+        read = pool.submit(pipe.read_bytes)
+        done = reflight(
+            "export", pane / "plan.json", "--site", pane / "site.json", "--format", "mavlink-plan", "-o", pipe
+        )
+        assert done.status == 0
+        assert json.loads(read.result())["fileType"] == "Plan"
+        read = pool.submit(pipe.read_bytes)
+        assert reflight("plan", pane / "site.json", "-o", pipe, "--views", 1, "--candidates", 50).status == 0
+        assert len(json.loads(read.result())["viewpoints"]) == 1
+    assert list(tmp_path.iterdir()) == [pipe]
 
 
 @pytest.mark.few(13)

@@ -148,6 +148,7 @@ def run(options: argparse.Namespace) -> int:
     """Plan and write; returns the exit status."""
     started = time.perf_counter()  # Loading what planning needs is part of the time budget.
     from groundstation.services.plan.planning import locked_viewpoints, plan_site, planned_summary
+    from planning.base.json_file import is_device
     from planning.proof.make import proof_path
 
     request, at = request_of(options), planned_time(options)
@@ -172,7 +173,8 @@ def run(options: argparse.Namespace) -> int:
         print_json(planned_summary(planned, seconds))
     else:
         print_summary(planned, options.out, seconds)
-        tell("its proof for an independent check: {}", proof_path(options.out).name)
+        if not is_device(options.out):
+            tell("its proof for an independent check: {}", proof_path(options.out).name)
         print_findings(planned.findings)
         print_next("check", options.out, options.site)
     return 0

@@ -25,7 +25,7 @@ from missions.formats.registry import encode, mission_format, sortie_path, write
 from planning.base.errors import InputError
 from planning.base.files import check_ending, real_path, sha256_of_file
 from planning.base.findings import Finding, Severity
-from planning.base.json_file import JSON_FILE, check_output
+from planning.base.json_file import JSON_FILE, check_output, is_device
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.parameters import DEFAULT_PROFILE, Constraints
@@ -117,7 +117,8 @@ def export_plan(
     for number in range(2, len(encoded.contents) + 1):
         check_output(sortie_path(out, number), sources)
     proof = None
-    if site_path is not None and site_model is not None and file_format in PROVED_FORMATS:
+    is_proved = file_format in PROVED_FORMATS and not is_device(out)
+    if site_path is not None and site_model is not None and is_proved:
         return_height_m = stated_return_m(plan, origin, home, file_format, with_site)
         flown = None if plan == planned else plan
         proof = mission_proof(plan_path, flown, site_path, site_model, out, return_height_m)

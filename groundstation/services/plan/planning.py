@@ -17,7 +17,7 @@ from groundstation.services.units import per_cent
 from planning.base.errors import InputError
 from planning.base.findings import Finding, Severity
 from planning.base.jit import is_compiled
-from planning.base.json_file import check_output, plain_values
+from planning.base.json_file import check_output, is_device, plain_values
 from planning.base.messages import glue, say
 from planning.base.progress import COMPILING, QUIET, Monitor, Stop, Trace, never
 from planning.checks.rules import low_flight_allowed, sharpness
@@ -73,7 +73,8 @@ def plan_site(
     planned = plan_document_site(site_model, request, started_s=started_s, stop=stop, trace=trace, monitor=monitor)
     if out is not None:
         write_plan(out, planned.plan)
-        write_plan_proof(out, site_path, site_model, planned.prepared.problem.reachability, monitor)
+        if not is_device(out):
+            write_plan_proof(out, site_path, site_model, planned.prepared.problem.reachability, monitor)
     return planned
 
 
