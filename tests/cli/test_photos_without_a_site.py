@@ -192,6 +192,8 @@ def test_what_is_missing_is_said(reflight, tmp_path):
     write_project(folder)
     assert "found nothing" in reflight("prepare", tmp_path / "none", "-o", tmp_path / "d").error
     (tmp_path / "bare").mkdir()
+    assert "holds no .jpg photo" in reflight("prepare", tmp_path / "bare", "-o", tmp_path / "d").error
+    shutil.copy(folder / "images" / "p00.png", tmp_path / "bare")
     no_model = reflight("prepare", tmp_path / "bare", "-o", tmp_path / "d").error
     assert "no transforms.json" in no_model
     assert "--colmap" in no_model
@@ -203,6 +205,10 @@ def test_what_is_missing_is_said(reflight, tmp_path):
     assert "1 of 6 images of the COLMAP model are not in" in done.err
     assert "p01.png" in done.err
     assert "5 photos prepared" in done.out
+    assert "not in the model" not in done.err
+    assert cv2.imwrite(str(folder / "images" / "more.jpg"), np.zeros((30, 40, 3), np.uint8))
+    done = prepared(reflight, folder, out=tmp_path / "more")
+    assert "1 of 7 photos are not in the model, the first more.jpg" in done.err
     (folder / "images").rename(folder / "photos")
     error = reflight("prepare", folder, "-o", tmp_path / "e").error
     assert "none of the 6 images of the model is in this folder, the first 'p00.png'" in error
@@ -266,3 +272,10 @@ def test_it_is_trained_scored_and_exported_without_further_ado(reflight, tmp_pat
     for kind, name in (("ply", "a.ply"), ("web", "web")):
         exported = reflight("export", model, "--format", kind, "-o", tmp_path / name)
         assert exported.status == 0, exported.err
+
+
+def test_folders_of_the_program_that_are_not_finished_are_none_of_another(reflight, tmp_path):
+    write_project(tmp_path / "wall")
+    (tmp_path / "wall" / "scene.json").write_text("{}")
+    assert "has no dataset.json" in reflight("train", tmp_path / "wall", "-o", tmp_path / "m").error
+    assert not (tmp_path / "wall.dataset").exists()

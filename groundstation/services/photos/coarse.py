@@ -33,6 +33,8 @@ from reconstruction.coarse.inputs import Stated
 from reconstruction.coarse.parameters import CoarseRequest
 from reconstruction.coarse.placing import GUESSED
 from reconstruction.dataset.prepare import DATA_SET as FINISHED
+from reconstruction.dataset.prepare import UNFINISHED
+from reconstruction.light.photo_set import SCENE_FILE
 from reconstruction.photos.lens import CameraKind
 
 Array = NDArray[np.float64]
@@ -316,7 +318,8 @@ def data_set_of(folder: Path, monitor: Monitor = QUIET) -> Path:
         if not (out / FINISHED).is_file():
             prepare_coarse(folder, out, monitor)
         return out
-    if (folder / FINISHED).is_file() or poses_within(folder) is None:
+    is_ours = any((folder / name).exists() for name in (FINISHED, UNFINISHED, SCENE_FILE))
+    if is_ours or poses_within(folder) is None:
         return folder
     whole = folder.absolute()
     out = whole.with_name(f"{whole.name}.dataset")

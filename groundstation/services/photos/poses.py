@@ -22,7 +22,7 @@ from planning.photos.folder import is_other_picture, read_photos
 from planning.photos.places import Locality, PhotoHeights
 from planning.photos.record import PhotoMetadata
 from reconstruction.base.cameras import PosedPhoto
-from reconstruction.coarse.inputs import provisional_place
+from reconstruction.coarse.inputs import ProvisionalPlace, provisional_place
 from reconstruction.coarse.placing import in_own_frame, usual_distance
 from reconstruction.colmap.folder import Frame, model_within, read_frame, read_model
 from reconstruction.colmap.georeference import (
@@ -291,38 +291,50 @@ def photos_alone(
         There is no model, none of its images is there, or one of both is damaged.
     """
     place = poses_within(folder) if colmap is None else colmap
-    if place is None and folder.is_dir():
+    if place is None:
+        read_photos(folder, monitor, posed_elsewhere=True)  # a folder without photos has another fault
         raise InputError.say(
             "holds no COLMAP model (such as sparse/0) and no transforms.json; name it with --colmap, name a site if "
             "the photos say where they were taken, or make a model of them with 'coarse'",
             place=folder,
         )
-    model = read_poses(place) if place is not None else ColmapModel({}, {})
+    model = read_poses(place)
     photos_folder = _folder_of_images(model, folder)
     model = named_below(model, photos_folder)
     read = read_photos(photos_folder, monitor, posed_elsewhere=True)
-    frame = read_frame(place) if place is not None and place.is_dir() else None
-    here = provisional_place(read.photos, folder.name)
-    nothing = PhotoSet(
-        (), (), (), (), (), {name_in(photos_folder, one): (one.width_px, one.height_px) for one in read.photos}
-    )
-    posed = nothing
-    if here is not None:
-        posed = pose_photos(read.photos, here, photos_folder, heights=heights, posed_elsewhere=True)
+    frame = read_frame(place) if place.is_dir() else None
+    known = provisional_place(read.photos, folder.name)
+    here = known or ProvisionalPlace(folder.name, Origin(0.0, 0.0, 0.0))
+    posed = pose_photos(read.photos, here, photos_folder, heights=heights, posed_elsewhere=True)
     n_placed = len({photo.name for photo in posed.photos} & {image.name for image in model.images.values()})
     own: Similarity | None = None
     if frame is None and n_placed < LEAST_PLACED:
         own, notes = in_own_frame(model, {name_in(photos_folder, one): one for one in read.photos})
-        found = _in_frame(in_enu(model, own), USUAL_FRAME, nothing, photos_folder)
+        found = _in_frame(in_enu(model, own), USUAL_FRAME, posed, photos_folder)
         found = replace(found, findings=(*notes, *found.findings))
     else:
         found = _of_model(model, frame, posed, photos_folder)
     found = _fitted(found, posed.sizes_px)
     if found.points_enu_m is None:
         found = _with_points_ahead(found)
-    origin = None if own is not None or here is None else here.origin
-    findings = (*read.findings, *findings_that_hold(posed, found), *found.findings)
-    return PhotosAlone(replace(found, findings=findings), origin if frame is None else frame.origin or origin, own)
+    origin = None if own is not None or known is None else known.origin
+    if frame is not None and frame.origin is not None:
+        origin = frame.origin
+    about_photos = findings_that_hold(posed, found)
+    if own is not None:
+        about_photos = (*(one for one in about_photos if one.code != UNPOSED), *_not_in_model(posed, model))
+    findings = (*read.findings, *about_photos, *found.findings)
+    return PhotosAlone(replace(found, findings=findings), origin, own)
+
+
+def _not_in_model(posed: PhotoSet, model: ColmapModel) -> list[Finding]:
+    names = {image.name for image in model.images.values()}
+    left = sorted(posed.sizes_px.keys() - names)
+    if not left:
+        return []
+    n_all = len(names) + len(left)
+    text = say("{} of {} photos are not in the model, the first {}; they are left out", len(left), n_all, left[0])
+    return [Finding(Severity.NOTE, "photos-not-in-model", text, "", float(len(left)), 0.0, "photos")]
 
 
 LEAST_PLACED = 3
