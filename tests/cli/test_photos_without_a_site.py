@@ -269,6 +269,7 @@ def test_it_is_trained_scored_and_exported_without_further_ado(reflight, tmp_pat
     scored = reflight("score", model, tmp_path / "wall.dataset", "--json")
     assert scored.status == 0, scored.err
     assert scored.json["psnr_db"] > 0.0
+    assert "facade" not in reflight("score", model, tmp_path / "wall.dataset").out
     for kind, name in (("ply", "a.ply"), ("web", "web")):
         exported = reflight("export", model, "--format", kind, "-o", tmp_path / name)
         assert exported.status == 0, exported.err
