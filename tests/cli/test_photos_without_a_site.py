@@ -265,6 +265,7 @@ def test_it_is_trained_scored_and_exported_without_further_ado(reflight, tmp_pat
     done = reflight("train", tmp_path / "wall", "-o", model, *settings)
     assert done.status == 0, done.err
     assert "unseen view" in done.out
+    assert "one unit of it counts as 1 m" in done.err
     assert f"next: app.py score {model} {tmp_path / 'wall.dataset'}" in done.err
     scored = reflight("score", model, tmp_path / "wall.dataset", "--json")
     assert scored.status == 0, scored.err

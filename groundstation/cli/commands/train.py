@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from groundstation.cli.console import counted, print_json, print_next, print_notes, run_job, show, tell
+from groundstation.cli.console import counted, print_findings, print_json, print_next, print_notes, run_job, show, tell
 from groundstation.cli.options import PluginNames, add_parameter, in_words_of_options, new_folder, typed_values
 from planning.base.errors import InputError, OperationCancelled
 from planning.base.messages import glue, say
@@ -19,6 +19,7 @@ from reconstruction.training.parameters import PRESETS, TrainRequest
 
 if TYPE_CHECKING:
     from groundstation.services.reconstruct.training import TrainedFiles
+    from planning.base.findings import Finding
     from reconstruction.metrics.image_metrics import Quality
 
 PRESET_LINES = "\n".join(f"  {name:<11} {each.what}" for name, each in PRESETS.items())
@@ -100,12 +101,13 @@ def run(options: argparse.Namespace) -> int:
         raise InputError(
             say("--resume goes on with the settings that the training was begun with; leave {} out", option)
         )
+    found: list[Finding] = []
     preview = None if options.preview is None else preview_to(options.preview)
     try:
         result = run_job(
             "train",
             lambda context: train_files(
-                data_set_of(options.dataset, context),
+                data_set_of(options.dataset, context, found),
                 options.out,
                 request,
                 resume=options.resume,
@@ -122,6 +124,7 @@ def run(options: argparse.Namespace) -> int:
         raise
     if not result.is_written:
         return 0
+    print_findings(found)
     if options.json:
         print_json(train_summary(result))
     else:

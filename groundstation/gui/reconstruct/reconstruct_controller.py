@@ -47,7 +47,7 @@ from groundstation.services.reconstruct.messages import (
 from planning.base.effects import Decision
 from planning.base.errors import GroundStationError
 from planning.base.files import real_path
-from planning.base.findings import Severity
+from planning.base.findings import Finding, Severity
 from reconstruction.light.photo_set import held_out_names
 from reconstruction.training.method_registry import PLAIN_METHOD, method_named
 
@@ -116,13 +116,17 @@ class FolderController(QObject):
         if self._is_reading:
             return
 
+        found: list[Finding] = []
+
         def work(context: JobContext) -> DataSetCard:
             from groundstation.services.photos.coarse import data_set_of
 
-            return read_data_set(data_set_of(folder, context), context)
+            return read_data_set(data_set_of(folder, context, found), context)
 
         def done(card: DataSetCard) -> None:
             if real_path(card.folder) != real_path(folder):
+                for each in found:
+                    self._context.say(each.severity, self._context.localized(each.message))
                 text = self.tr("A data set for plain splats was made of {0}: {1}")
                 self._context.say(Severity.OK, text.format(folder, card.folder))
             self._read(card)

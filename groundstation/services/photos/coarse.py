@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from groundstation.services.photos.dataset import prepare_files
+from groundstation.services.photos.dataset import PreparedFiles, prepare_files
 from groundstation.services.photos.poses import poses_within
 from planning.base.effects import Decision
 from planning.base.errors import InputError
@@ -303,10 +303,15 @@ def _finite(value: float) -> float | None:
     return round(float(value), 4) if np.isfinite(value) else None
 
 
-def data_set_of(folder: Path, monitor: Monitor = QUIET) -> Path:
+def data_set_of(folder: Path, monitor: Monitor = QUIET, found: list[Finding] | None = None) -> Path:
     """The data set folder that stands for a folder: itself, or what is prepared for plain splats.
 
     That is of a coarse model in its folder, and of photos with a model of another program beside theirs.
+
+    Parameters
+    ----------
+    found
+        Findings about photos that were prepared are put there.
 
     Raises
     ------
@@ -316,7 +321,7 @@ def data_set_of(folder: Path, monitor: Monitor = QUIET) -> Path:
     if (folder / REPORT_FILE).is_file():
         out = folder / DATA_SET
         if not (out / FINISHED).is_file():
-            prepare_coarse(folder, out, monitor)
+            _tell(prepare_coarse(folder, out, monitor), found)
         return out
     is_ours = any((folder / name).exists() for name in (FINISHED, UNFINISHED, SCENE_FILE))
     if is_ours or poses_within(folder) is None:
@@ -324,13 +329,18 @@ def data_set_of(folder: Path, monitor: Monitor = QUIET) -> Path:
     whole = folder.absolute()
     out = whole.with_name(f"{whole.name}.dataset")
     if not (out / FINISHED).is_file():
-        prepare_files(folder, None, out, monitor=monitor)
+        _tell(prepare_files(folder, None, out, monitor=monitor), found)
     return out
 
 
-def prepare_coarse(folder: Path, out: Path, monitor: Monitor = QUIET) -> None:
+def _tell(prepared: PreparedFiles, found: list[Finding] | None) -> None:
+    if found is not None:
+        found.extend(prepared.findings)
+
+
+def prepare_coarse(folder: Path, out: Path, monitor: Monitor = QUIET) -> PreparedFiles:
     """Write the data set of a coarse model, of the photos that it was made of."""
-    prepare_files(photos_of(folder), folder / SITE_FILE, out, colmap=folder / SPARSE, monitor=monitor)
+    return prepare_files(photos_of(folder), folder / SITE_FILE, out, colmap=folder / SPARSE, monitor=monitor)
 
 
 def photos_of(folder: Path) -> Path:
