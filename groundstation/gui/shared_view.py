@@ -15,6 +15,7 @@ from PySide6.QtCore import QEvent, QMargins, QObject, QRect, QTimer, Signal
 from PySide6.QtWidgets import QButtonGroup, QLabel, QPushButton, QStackedWidget, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.application.gradual import TURN_MS
 from groundstation.gui.widgets.scrolling import WrappingRow
 from groundstation.services.jobs.runner import Job
 from groundstation.services.project.document import Document, Item, ItemKind
@@ -74,6 +75,7 @@ class SharedView(QWidget):
         self._context = context
         self._insets = QMargins()
         self._scene: SceneView | None = None
+        self._making: SceneView | None = None
         self._map: MapView | None = None
         self._tiles: Path | None = None
         self._overlays: tuple[Path, ...] = ()
@@ -223,12 +225,23 @@ class SharedView(QWidget):
         return self._camera
 
     def make_scene(self) -> None:
-        """Make the 3-D view; its module is best imported before, on another thread."""
-        if self._scene is not None:
+        """Make the 3-D view, in three turns; its module is best imported before, on another thread.
+
+        With the first OpenGL widget of a window Qt paints all of it anew, by OpenGL; what VTK compiles for its first
+        frame takes as long again. In one turn it would be a quarter of a second.
+        """
+        if self._scene is not None or self._making is not None:
             return
         from groundstation.gui.view3d.scene_view import SceneView
 
-        scene = self._scene = SceneView(self)
+        self._making = SceneView(self)
+        QTimer.singleShot(TURN_MS, self._making, self._fill_scene)
+
+    def _fill_scene(self) -> None:
+        """Let the view that was made show what there is by now."""
+        scene = self._scene = self._making
+        if scene is None:
+            return
         self._pages.addWidget(scene)
         scene.set_units(self._context.units)
         scene.set_insets(self._insets)
@@ -246,8 +259,7 @@ class SharedView(QWidget):
         for callback in waiting:
             callback(scene)
         self.sceneReady.emit(scene)
-        # In a turn of its own.
-        QTimer.singleShot(0, scene, scene.warm_up)
+        QTimer.singleShot(TURN_MS, scene, scene.warm_up)
 
     def _look_around(self, model: SiteModel) -> None:
         """Have the virtual scene of a site made, and show it where the site is still that one."""
@@ -285,8 +297,9 @@ class SharedView(QWidget):
 
     def close_views(self) -> None:
         """Free what the views hold; call before the window goes away."""
-        if self._scene is not None:
-            self._scene.close_view()
+        if self._making is not None:
+            self._making.close_view()
+            self._making = None
         if self._camera is not None:
             self._camera.close_view()
         if self._map is not None:

@@ -6,11 +6,15 @@ from collections.abc import Iterator
 
 from PySide6.QtCore import QObject
 
+TURN_MS = 10
+"""Between two parts of what is made by and by; without a pause Qt may do them all in one turn."""
+
 
 class GradualTab(QObject):
     """A tab whose page takes so long to make that the window would stand still.
 
-    Subclasses make themselves in `_parts`, with a `yield` behind each part. Who wants the whole at once gets it.
+    Subclasses make themselves in `_parts`, with a `yield` behind each part, the last one, too: the window takes a turn
+    for the page's place. Who wants the whole at once gets it.
 
     Parameters
     ----------

@@ -311,6 +311,7 @@ class FlyPage(GradualTab):
         self._show_document()
         self._show_all()
         self._show_fleet()
+        yield
 
     # A tab
 

@@ -406,6 +406,7 @@ class PlanPage(GradualTab):
         self._show_document(context.document)
         self._show_units(context.units)
         self._show_active(self.controller.active)
+        yield
 
     def _make_actions(self) -> None:
         self._plan_action = QAction(self.tr("Plan the flight"), self)

@@ -254,6 +254,7 @@ class ReconstructPage(GradualTab):
         self._units_changed(context.units)
         self._show_light()
         self._show_state()
+        yield
 
     # A tab
 

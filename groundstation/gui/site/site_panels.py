@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 
 from PySide6.QtCore import QSize, Qt, Signal
@@ -11,6 +11,7 @@ from PySide6.QtGui import QAction, QColor
 from PySide6.QtWidgets import QLabel, QListWidget, QListWidgetItem, QPushButton, QVBoxLayout, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.application.gradual import GradualTab
 from groundstation.gui.application.translate import translated
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.site.grid_form import GridController, GridForm
@@ -339,14 +340,25 @@ def _large(text: str, *, primary: bool = False) -> QPushButton:
     return button
 
 
-class SiteTab:
+class SiteTab(GradualTab):
     """The Site tab; see `groundstation.gui.tabs.Tab`."""
 
-    def __init__(self, context: ApplicationContext, shared_view: SharedView) -> None:
+    def __init__(self, context: ApplicationContext, shared_view: SharedView, *, at_once: bool = True) -> None:
+        self._context, self._shared_view = context, shared_view
+        super().__init__(shared_view, at_once=at_once)
+
+    def _parts(self) -> Iterator[None]:
+        context = self._context
         self.left = SiteSide(context)
-        self.detail = SiteDetail(context, shared_view, self.left)
+        yield
+        editor = SiteEditor(context, self)
+        tools, grid_form = SiteTools(context, self._shared_view, editor), GridForm(context.units)
+        yield
+        grid_maker = GridController(context, self._shared_view, editor, tools, grid_form)
+        self.detail = SiteDetail(context, self.left, editor, grid_maker, tools, grid_form)
         self.right: QWidget | None = scrolled(self.detail)
         self.bottom: QWidget | None = None
+        yield
 
     def shown(self) -> None:
         """Check the site after edits."""
@@ -458,14 +470,17 @@ class SiteDetail(QWidget):
     """Tools, the panel grid while one is made, properties of what is selected, and what the check found."""
 
     def __init__(
-        self, context: ApplicationContext, shared_view: SharedView, side: SiteSide, parent: QWidget | None = None
+        self,
+        context: ApplicationContext,
+        side: SiteSide,
+        editor: SiteEditor,
+        grid_maker: GridController,
+        tools: SiteTools,
+        grid_form: GridForm,
     ) -> None:
-        super().__init__(parent)
+        super().__init__()
         self._context = context
-        self.editor = SiteEditor(context, self)
-        self.tools = SiteTools(context, shared_view, self.editor)
-        self.grid_form = GridForm(context.units)
-        self.grid_maker = GridController(context, shared_view, self.editor, self.tools, self.grid_form)
+        self.editor, self.grid_maker, self.tools, self.grid_form = editor, grid_maker, tools, grid_form
         self.properties = PropertyPanel(context, self.editor)
         self.findings = FindingsList()
         self.findings.set_units(context.units)

@@ -11,6 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pyvista as pv
+
+# PyVista would load these two when the first view is made: 40 ms of the window's thread.
+import vtkmodules.vtkInteractionWidgets
+import vtkmodules.vtkViewsContext2D  # noqa: F401
 from numpy.typing import NDArray
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QImage, QResizeEvent, QShowEvent
@@ -18,6 +22,7 @@ from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
 
+from groundstation.gui.application.gradual import TURN_MS
 from groundstation.gui.view3d.drawables import Drawable
 from groundstation.gui.view3d.orbit import Pinhole
 
@@ -230,7 +235,7 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
         """Paint in a turn of its own: in this one a whole tab is laid out and painted with it."""
         super().showEvent(event)
         self.setUpdatesEnabled(False)
-        QTimer.singleShot(0, self, lambda: self.setUpdatesEnabled(True))
+        QTimer.singleShot(TURN_MS, self, lambda: self.setUpdatesEnabled(True))
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
         """Paint with the window: Qt would paint here at once, and then once more."""

@@ -25,7 +25,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.application.gradual import GradualTab
+from groundstation.gui.application.gradual import TURN_MS, GradualTab
 from groundstation.gui.application.interpreter import BackgroundImport
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.tabs import TABS, Place, Tab, TabSpec
@@ -51,9 +51,6 @@ STEPS = frozenset(Step)
 
 MAKE_NEXT_MS = 500
 """After a tab was shown, the next one is made, which takes up to a fifth of a second."""
-
-TURN_MS = 10
-"""Between two parts of it; without a pause Qt may do them all in one turn."""
 
 WANTS_TABS = (QEvent.Type.MouseButtonPress, QEvent.Type.KeyPress, QEvent.Type.TouchBegin)
 """Somebody works with the window: the tabs behind the start page are imported, which take 0.2 GB and some seconds."""
@@ -93,6 +90,7 @@ class MainWindow(QMainWindow):
         self._loading = BackgroundImport(parent=self)
         self._loading.imported.connect(self._imported)
         self._is_wanted = False
+        self._first_act: tuple[str, Act] | None = None
         self._manual: ManualWindow | None = None
         self._takes_keyboard = False
         self._quick_buttons: list[QToolButton] = []
@@ -224,8 +222,12 @@ class MainWindow(QMainWindow):
         self.tab(name)
         self.lead_to(name)
 
-    def lead_to(self, name: str) -> None:
-        """Bring a tab to the front, and the keyboard to its first widget, as soon as it is made."""
+    def lead_to(self, name: str, act: Act | None = None) -> None:
+        """Bring a tab to the front, and the keyboard to its first widget, as soon as it is made; then do a step in it.
+
+        The step is forgotten where another tab is chosen before.
+        """
+        self._first_act = None if act is None else (name, act)
         self._bar.setCurrentIndex(self.tab_names().index(name))
         if self._shown is None:
             self._tab_chosen(self._bar.currentIndex())
@@ -253,7 +255,7 @@ class MainWindow(QMainWindow):
 
     def _make_next(self) -> None:
         """Make the tab that will be wanted next, while nothing else happens, so that it is there at once."""
-        if self._context.is_busy:
+        if self._context.is_busy or self._coming is not None:
             self._make_soon.start()
         elif self._shown is not None and not self._bar.signalsBlocked():
             following = TABS[min(TABS.index(self._shown) + 1, len(TABS) - 1)]
@@ -368,6 +370,10 @@ class MainWindow(QMainWindow):
         self._give_keyboard()
         self._make_soon.start()
         self.tabShown.emit(spec.name)
+        first, self._first_act = self._first_act, None
+        if first is not None and first[0] == spec.name:
+            # In a turn of its own: the tab is seen before a dialog lies over it.
+            QTimer.singleShot(0, self, lambda: self.take_step(first[1]))
 
     def _set_view_alone(self, is_alone: bool) -> None:
         """Give the shared view the room of the lists, or take it back; another tab takes it back, too."""

@@ -10,8 +10,10 @@ import threading
 from collections.abc import Callable
 from dataclasses import fields, replace
 from functools import partial
+from importlib import import_module
 from pathlib import Path
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, QTimer, Signal
@@ -48,6 +50,9 @@ from planning.geo.enu import geodetic_from_enu
 from planning.geo.frames import Origin
 from planning.geo.geoid import undulation_m
 from planning.request import PlanRequest
+
+if TYPE_CHECKING:
+    from groundstation.gui.site.site_opener import SiteOpener
 
 
 class ProjectController(QObject):
@@ -140,19 +145,28 @@ class ProjectController(QObject):
         def go_on() -> None:
             if self.context.document.site is not None:
                 self._put_on_controller(_first_document(self._settings), None)
-            self.window.show_tab(tab)
-            self.window.take_step(act)
+            self.window.lead_to(tab, act)
 
         self._leave(go_on)
 
     def _open_bundled(self) -> None:
-        from groundstation.gui.site.site_opener import SiteOpener
-
         def go_on() -> None:
             self._put_on_controller(_first_document(self._settings), None)
-            SiteOpener(self.context, self.window).open_bundled("office")
+            self._with_opener(self.tr("Bundled site"), lambda opener: opener.open_bundled("office"))
 
         self._leave(go_on)
+
+    def _with_opener(self, job: str, then: Callable[[SiteOpener], object]) -> None:
+        """Open a site, once what opens one is imported: the window would stand still for that, over a second."""
+
+        def go_on(module: ModuleType) -> None:
+            then(module.SiteOpener(self.context, self.window))
+
+        def work(_context: object) -> ModuleType:
+            self._make_ready()
+            return import_module("groundstation.gui.site.site_opener")
+
+        self.context.start(job, work, go_on)
 
     def open_sample(self) -> None:
         """Open the finished sample; a copy of it is made where there is none yet."""
@@ -338,18 +352,31 @@ class ProjectController(QObject):
 
     def open_folder(self, folder: Path) -> None:
         """Open a project, after asking about what is not saved; a finished model on its tab, beside what is open."""
-        from groundstation.services.model.scene_card import is_model, is_scene
+        if is_project(folder):
+            self._open_project(folder)
+        else:
+            module = "groundstation.gui.model.model_controller"
+            self.context.start(
+                self.tr("Open the model"), lambda _context: import_module(module), partial(self._open_model, folder)
+            )
 
-        if not is_project(folder) and (is_scene(folder) or is_model(folder)):
-            from groundstation.gui.model.model_controller import ModelController
+    def _open_model(self, folder: Path, module: ModuleType) -> None:
+        """Open a finished model; what is neither that nor a project is told of."""
+        if module.is_scene(folder) or module.is_model(folder):
+            self.window.lead_to("model")
+            module.ModelController.of(self.context).open(folder)
+        else:
+            self._open_project(folder)
 
-            self.window.show_tab("model")
-            ModelController.of(self.context).open(folder)
-            return
-
+    def _open_project(self, folder: Path) -> None:
         def open_it() -> None:
             take = self.project_session.opening_job(folder)
-            self.context.start(self.tr("Open project"), lambda _context: take(), self._opened)
+
+            def work(_context: object) -> LockedProject:
+                self._make_ready()
+                return take()
+
+            self.context.start(self.tr("Open project"), work, self._opened)
 
         self._leave(open_it)
 
@@ -358,9 +385,7 @@ class ProjectController(QObject):
         if path.is_dir() or path.name == "project.json":
             self.open_folder(path)
             return
-        from groundstation.gui.site.site_opener import SiteOpener
-
-        SiteOpener(self.context, self.window).open_site(path)
+        self._with_opener(self.tr("Open {0}").format(path.name), lambda opener: opener.open_site(path))
 
     def save(self, then: Callable[[], object] | None = None) -> None:
         """Save where the project is kept, or ask where."""

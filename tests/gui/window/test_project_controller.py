@@ -123,7 +123,7 @@ def test_the_folder_of_a_model_opens_on_its_tab_and_the_project_stays(applicatio
     with_site(application, controller)
     controller.open_path(folder)
     turn_until(application, lambda: ModelController.of(controller.context).card is not None)
-    assert controller.window.shown_tab() == "model"
+    turn_until(application, lambda: controller.window.shown_tab() == "model")
     assert ModelController.of(controller.context).card.folder.name == folder.name
     assert controller.context.document.site.site.name == "roof"
     assert "Error" not in controller.window.messages.texts()
