@@ -2,7 +2,8 @@
 
 Kernels release the interpreter lock and are run on ordinary threads in chunks, because Numba's own parallel loops are
 not safe to enter from two threads on every platform; jobs can then be cancelled between chunks, too. Compiled code is
-kept on disk; `python -m planning.warm_up` compiles everything once, at set-up.
+kept on disk; `python -m planning.warm_up` compiles everything once, at set-up. Numba itself, 0.1 GB of memory, is
+imported for the first call: a window on its start page does without.
 """
 
 from __future__ import annotations
@@ -10,15 +11,16 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from functools import cache
+from functools import cache, update_wrapper
 from pathlib import Path
-from typing import Any, TypeVar, cast
-
-import numba
-from numba.core.types import Type
-from numba.core.types.misc import unliteral
+from threading import RLock
+from types import CodeType
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from planning.base.progress import COMPILING, COMPILING_LOG
+
+if TYPE_CHECKING:
+    from numba.core.types import Type
 
 F = TypeVar("F", bound=Callable[..., Any])
 Result = TypeVar("Result")
@@ -35,6 +37,63 @@ def kernel(function: F) -> F:
 
     A kernel that others call with constants is compiled once; Numba by itself would compile it once for each constant.
     """
+    return cast("F", _Kernel(function, _njit))
+
+
+def inline(function: F) -> F:
+    """Compile a small helper into whatever kernel calls it."""
+    return cast("F", _Kernel(function, _njit_inline))
+
+
+class _Kernel:
+    """A numeric function until it is wanted: then Numba's dispatcher of it, which this stands for.
+
+    Numba looks up what a kernel calls in the kernel's own module, and knows dispatchers only. So those take the places
+    of what stands for them there, before a kernel that calls them can be compiled.
+    """
+
+    _lock = RLock()
+
+    def __init__(self, function: Callable[..., Any], dispatcher_of: Callable[[Callable[..., Any]], Any]) -> None:
+        update_wrapper(self, function)
+        self._function, self._dispatcher_of = function, dispatcher_of
+        self._begun: Any = None
+        self._dispatcher: Any = None
+
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
+        return (self._dispatcher or self.dispatcher())(*arguments, **named)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self.dispatcher(), name)
+
+    def dispatcher(self) -> Any:
+        """Numba's own, as are those of all kernels that it calls."""
+        with self._lock:
+            if self._begun is None:
+                self._begun = self._dispatcher_of(self._function)
+                known = self._function.__globals__
+                for name in _names_in(self._function.__code__):
+                    if isinstance(known.get(name), _Kernel):
+                        known[name] = known[name].dispatcher()
+                for cell in self._function.__closure__ or ():
+                    if isinstance(cell.cell_contents, _Kernel):
+                        cell.cell_contents = cell.cell_contents.dispatcher()
+                self._dispatcher = self._begun
+            return self._begun
+
+
+def _names_in(code: CodeType) -> set[str]:
+    """Names of what a function may look up in its module, also in the functions inside it."""
+    inner = (_names_in(constant) for constant in code.co_consts if isinstance(constant, CodeType))
+    return set(code.co_names).union(*inner)
+
+
+def _njit(function: Callable[..., Any]) -> Any:
+    import numba  # not at the top: see above
+    from numba.core.types.misc import unliteral
+
     compiled = _kept_on_disk(numba.njit(**OPTIONS)(function))
     template_of = compiled.get_call_template
 
@@ -42,12 +101,13 @@ def kernel(function: F) -> F:
         return template_of(tuple(map(unliteral, arguments)), {name: unliteral(each) for name, each in named.items()})
 
     compiled.get_call_template = get_call_template
-    return cast("F", compiled)
+    return compiled
 
 
-def inline(function: F) -> F:
-    """Compile a small helper into whatever kernel calls it."""
-    return cast("F", _kept_on_disk(numba.njit(**OPTIONS, inline="always")(function)))
+def _njit_inline(function: Callable[..., Any]) -> Any:
+    import numba  # not at the top: see above
+
+    return _kept_on_disk(numba.njit(**OPTIONS, inline="always")(function))
 
 
 def _kept_on_disk(compiled: Any) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,6 +69,7 @@ class PickIndex:
     """Answers what a ray meets. Made once per site; viewpoints and routes are looked up by their pixels."""
 
     def __init__(self, scene: SiteScene) -> None:
+        load_kernels()
         site, model = scene.model.site, scene.model
         parts: list[tuple[Item | None, Array]] = [(None, panel_triangles(shown_panels(scene.frames)))]
         parts.append((Item(ItemKind.BUILDING), model.building.corners_enu_m))
@@ -216,14 +218,12 @@ def pick(
     return surface
 
 
-def _load_kernels() -> None:
-    """Load the compiled code (0.2 s) with this module, on whatever thread imports it, not at the first mouse move."""
+@cache
+def load_kernels() -> None:
+    """Load the compiled code, and Numba with it, on whatever thread a site comes from; not at the first mouse move."""
     triangle = np.eye(3)
     segment_hits(build_bvh(triangle[None]), np.zeros(3), np.ones(3), np.empty(1, np.int64))
     segment_hits_triangle(np.zeros(3), np.ones(3), triangle)
-
-
-_load_kernels()
 
 
 # What a picture covers: where the border of a photo falls on the surfaces of a site.

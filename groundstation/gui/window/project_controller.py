@@ -187,16 +187,23 @@ class ProjectController(QObject):
 
     def _scene_is_ready(self) -> None:
         self._garbage.freeze()
-        threading.Thread(target=self._make_ready, name="make-ready", daemon=True).start()
+        threading.Thread(target=self._read_tables, name="read-tables", daemon=True).start()
 
-    def _make_ready(self) -> None:
+    def _read_tables(self) -> None:
         """On another thread: read what the window's thread would stand still for when it first wants it."""
         profiles()
         undulation_m(0.0, 0.0)
+
+    def _make_ready(self) -> None:
+        """On another thread: load what a site is shown with; a start page can do without, and without its memory."""
+        from groundstation.gui.view3d.picking import load_kernels
+
+        self._read_tables()
         geodetic_from_enu(Origin(0.0, 0.0, 0.0), np.zeros((1, 3)))
+        load_kernels()
 
     def _site_came(self, before: Document, after: Document) -> None:
-        """On another thread: start the process that plans; a start page can do without it, and without its memory."""
+        """On another thread: start the process that plans, which a start page can do without, too."""
         if before.site is None and after.site is not None:
             threading.Thread(target=self._start_worker, name="start-worker", daemon=True).start()
 
@@ -205,6 +212,7 @@ class ProjectController(QObject):
         self.context.say(Severity.NOTE, self.context.localized(text))
 
     def _start_worker(self) -> None:
+        self._make_ready()  # for a site that no job of this controller has opened
         from groundstation.services.plan.planning import load_planning
 
         self._worker.start(load_planning)
