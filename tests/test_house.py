@@ -25,7 +25,7 @@ def python(code):
 @pytest.mark.parametrize(
     ("package", "forbidden"),
     [
-        ("planning", ["torch", "PySide6", "pyvista", "pymavlink", "matplotlib", "rasterio"]),
+        ("planning", ["torch", "PySide6", "pyvista", "pymavlink", "matplotlib", "rasterio", "numba"]),
         ("missions", ["torch", "PySide6", "pyvista", "open3d"]),
         ("groundstation.services", ["torch", "PySide6", "pyvista"]),
         ("groundstation.cli", ["torch", "PySide6", "pyvista"]),

@@ -15,6 +15,9 @@ from planning.site.bundled import write_scene
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(7200)]
+"""All kernels are compiled anew, some two minutes of processor time each time: on a busy machine ten times as long."""
+
 PLANS = """
 from planning.checks import check_plan
 from planning.parameters import Constraints, FlightRules
@@ -46,14 +49,12 @@ def run(*arguments: str, cache: Path) -> dict[Path, int]:
     return {path: path.stat().st_mtime_ns for path in cache.rglob("*") if path.suffix in (".nbi", ".nbc")}
 
 
-@pytest.mark.slow
 def test_nothing_is_left_to_compile_after_the_warm_up(tmp_path: Path) -> None:
     warm = run("-m", "planning.warm_up", cache=tmp_path)
     assert len(warm) > 100
     assert run("-c", PLANS, cache=tmp_path) == warm
 
 
-@pytest.mark.slow
 def test_the_first_plan_of_an_installation_compiles_before_its_time_budget_begins(tmp_path: Path) -> None:
     site = write_scene("office", tmp_path)
     command = [

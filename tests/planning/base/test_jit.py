@@ -92,6 +92,24 @@ def test_kernels_agree_with_their_python_source() -> None:
 
 
 @kernel
+def _one(x: float) -> float:
+    return _half(x + x) / x
+
+
+@kernel
+def _counted(n: int) -> float:
+    def last(x: float) -> float:
+        return _half(x)
+
+    return last(2.0) if n <= 1 else _one(3.0) + _counted(n - 1)
+
+
+def test_kernels_call_each_other_and_themselves_though_none_of_them_was_called_before() -> None:
+    assert _counted(4) == 4.0
+    assert _one(5.0) == 1.0
+
+
+@kernel
 def _power(x: float, n: int) -> float:
     return x**n
 
