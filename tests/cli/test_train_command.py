@@ -16,6 +16,7 @@ from reconstruction.light.photo_set import held_out_names
 from reconstruction.training.layers import LAYERS
 from tests.reconstruction.metrics.test_lpips import ALEX, package
 from tests.reconstruction.training.synthetic_data_set import write_data_set
+from tests.slow import slow
 
 SETTINGS = "n_splats = 150\nmax_splats = 200\n"
 
@@ -417,24 +418,16 @@ def test_a_page_holds_what_is_attached_to_records_and_says_what_is_missing(refli
     assert (tmp_path / "page" / "index.html").read_text().count('"state":"missing"') == 2
 
 
-@pytest.mark.parametrize(
-    ("light", "words"),
-    [
-        ("environment-map", "browsers with WebGPU show panes that mirror"),
-        pytest.param("mlp", "browsers cannot mirror as this model does", marks=pytest.mark.slow),
-    ],
-)
-def test_panes_of_a_page_mirror_where_browsers_can_and_nothing_else_is_asked_for(
-    reflight, glass, tmp_path, light, words
-):
+@pytest.mark.parametrize("light", ["environment-map", slow("mlp")])
+def test_panes_of_a_page_mirror_where_browsers_can_and_nothing_else_is_asked_for(reflight, glass, tmp_path, light):
     reflight("train", glass / "data", "-o", tmp_path / "model", *quick(glass), "--light", light)
     for colours in ("baked", "own"):
         page = tmp_path / colours
         done = reflight("export", tmp_path / "model", "--format", "web", "--colours", colours, "-o", page, "--json")
-        assert any(words in note for note in done.json["notes"]) == (colours == "baked")
+        is_baked = colours == "baked"
+        assert any("browsers with WebGPU show panes that mirror" in note for note in done.json["notes"]) == is_baked
         content = (page / "index.html").read_text()
-        mirrors = colours == "baked" and light == "environment-map"
-        assert ('id="m0"' in content) == ('id="l0"' in content) == mirrors
+        assert ('id="m0"' in content) == ('id="l0"' in content) == is_baked
 
 
 def test_gaussians_of_gltf_are_numbers_compressed_or_points(reflight, glass, tmp_path):
