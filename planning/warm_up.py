@@ -53,8 +53,9 @@ def _analyse() -> None:
     sun_day(SunSite(model), track, (view,), camera, {MIRRORS: "on"})
 
 
-LONG_ENOUGH_S = 60.0
-"""Compiling counts as planning time: with less, searches would be stopped before their kernels ran."""
+LONG_ENOUGH_S = 3600.0
+"""Compiling counts as planning time: with less, searches would be stopped before their kernels ran, on a busy computer
+with 60 s, too. They end by themselves after a few seconds."""
 
 
 def compile_kernels() -> None:
