@@ -169,6 +169,9 @@ def written() -> list[Input]:
         _input("PNG", "binary", "photo.png", "segment photo.png -o out/p.json"),
         _input("TIFF", "binary", "photo.tif", "segment photo.tif -o out/p.json"),
         _input("BMP", "binary", "photo.bmp", "segment photo.bmp -o out/p.json"),
+        _input("transforms.json", "json", "plain/transforms.json", "prepare plain -o out/d", "plain/"),
+        _input("points of nerfstudio", "header", "plain/points.ply", "prepare plain -o out/d", "plain/"),
+        _input("PNG called JPEG", "binary", "plain/images/a.jpg", "prepare plain -o out/d", "plain/"),
         _input("COCO", "json", "offices/_annotations.coco.json", f"{HERE}:coco", "offices/"),
     ]  # fmt: skip
 
@@ -369,6 +372,7 @@ def _pictures_and_tables() -> None:
     import cv2
 
     from groundstation.services.map.web_mercator import Tile
+    from reconstruction.dataset.records import coloured_ply
     from tests.services.map_files import square, tiles_around, vector_layer, write_map, write_pmtiles
 
     rng = np.random.default_rng(1)
@@ -386,6 +390,20 @@ def _pictures_and_tables() -> None:
     Path("t.tsp").write_text(
         f"NAME : t\nTYPE : TSP\nDIMENSION : 30\nEDGE_WEIGHT_TYPE : EUC_2D\nNODE_COORD_SECTION\n{places}\nEOF\n"
     )
+    Path("plain/images").mkdir(parents=True)
+    poses = (
+        np.eye(4),
+        np.array([[1.0, 0.0, 0.0, 0.5], [0.0, 0.0, -1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]]),
+    )
+    for name in ("a.jpg", "b.png"):
+        Path("plain/images", name).write_bytes(Path("photo.png").read_bytes())
+    frames = [
+        {"file_path": f"images/{name}", "transform_matrix": pose.tolist(), "w": 160, "h": 120}
+        for name, pose in zip(("a.jpg", "b.png"), poses, strict=True)
+    ]
+    lens = {"camera_model": "OPENCV", "fl_x": 150.0, "k1": -0.02, "cx": 79.0, "ply_file_path": "points.ply"}
+    Path("plain/transforms.json").write_text(json.dumps({**lens, "frames": frames}))
+    Path("plain/points.ply").write_bytes(coloured_ply(rng.uniform(-5.0, 5.0, (50, 3)), np.zeros((50, 3), np.uint8)))
     Path("offices").mkdir()
     cv2.imwrite("offices/a.jpg", picture)
     Path("offices/_annotations.coco.json").write_text(

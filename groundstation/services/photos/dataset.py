@@ -24,7 +24,7 @@ from planning.base.findings import Finding
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.frames import Origin
-from planning.geo.mesh import empty_mesh
+from planning.geo.mesh import MAX_COORDINATE_M, empty_mesh
 from planning.photos.places import PhotoHeights
 from planning.site.records import Airspace, Site, SiteModel
 from reconstruction.dataset.prepare import PreparedData, PrepareParameters, prepare
@@ -96,7 +96,8 @@ def _bare_site(name: str, origin: Origin | None, chosen: ChosenPoses) -> SiteMod
     if chosen.points_enu_m is not None:
         bounds = np.percentile(chosen.points_enu_m, (AROUND_PERCENT, 100.0 - AROUND_PERCENT), axis=0)
         places = np.concatenate([places, bounds])
-    low, high = places.min(axis=0) - AROUND_M, places.max(axis=0) + AROUND_M
+    low = np.clip(places.min(axis=0) - AROUND_M, -MAX_COORDINATE_M, MAX_COORDINATE_M - AROUND_M)
+    high = np.clip(places.max(axis=0) + AROUND_M, low + AROUND_M, MAX_COORDINATE_M)
     (x, y, z), (east, north, up) = low.tolist(), high.tolist()
     air = Airspace((x, y, z), (east, north, up), z)
     known = Origin(0.0, 0.0, 0.0) if origin is None else origin
