@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.files import read_input_file
+from planning.base.findings import Finding, Severity
 from planning.base.json_file import read_json, to_record, write_atomically
 from planning.base.messages import about, say
 from planning.geo.mesh import TriangleMesh
@@ -286,6 +287,7 @@ class _Lens:
 class _Frame(_Lens):
     file_path: str
     transform_matrix: tuple[tuple[float, ...], ...]
+    mask_path: str | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -294,8 +296,8 @@ class _Transforms(_Lens):
     ply_file_path: str | None = None
 
 
-def read_transforms(path: Path) -> tuple[ColmapModel, Path | None]:
-    """Cameras and images of a `transforms.json`, without points, and the file of points that it names.
+def read_transforms(path: Path) -> tuple[ColmapModel, Path | None, tuple[Finding, ...]]:
+    """Cameras and images of a `transforms.json`, without points; the file of points that it names; what is not used.
 
     Images' names are absolute paths of their files. The world is the file's own.
 
@@ -324,7 +326,13 @@ def read_transforms(path: Path) -> tuple[ColmapModel, Path | None]:
     if len(set(names)) < len(names):
         raise InputError(say("names {} pictures twice", len(names) - len(set(names)), place=path))
     model = ColmapModel({number: replace(camera, id=number) for camera, number in cameras.items()}, images)
-    return model, None if content.ply_file_path is None else path.parent / content.ply_file_path
+    n_masked = sum(frame.mask_path is not None for frame in content.frames)
+    text = say(
+        "{} of {} frames have masks, which are not used: all of a photo is learned", n_masked, len(content.frames)
+    )
+    masks = Finding(Severity.WARNING, "masks-not-used", text, str(path), float(n_masked), 0.0, "photos")
+    points = None if content.ply_file_path is None else path.parent / content.ply_file_path
+    return model, points, (masks,) if n_masked else ()
 
 
 def _picture_of(folder: Path, name: str) -> Path:

@@ -119,6 +119,7 @@ def test_transforms_json_is_read(reflight, tmp_path, kind):
         cloud = points_on_glass()
         (folder / "sparse_pc.ply").write_bytes(coloured_ply(cloud.xyz, cloud.rgb))
         content["ply_file_path"] = "sparse_pc.ply"
+        content["frames"][0]["mask_path"] = "masks/p00.png"
     else:
         lens = true[0].intrinsics
         frames = [
@@ -130,6 +131,7 @@ def test_transforms_json_is_read(reflight, tmp_path, kind):
     done = prepared(reflight, folder, out=tmp_path / "d")
     assert ("the model has no points" in done.err) == (kind == "rendered")
     assert "was turned" not in done.err
+    assert ("1 of 6 frames have masks, which are not used" in done.err) == (kind == "nerfstudio")
     for mine, theirs in zip(read_photo_set(tmp_path / "d").photos, true, strict=True):
         assert mine.name == theirs.name
         assert np.allclose(mine.pose.position_enu_m, theirs.pose.position_enu_m)
@@ -153,9 +155,9 @@ def test_distorted_frames_of_a_transforms_json_keep_their_numbers(tmp_path):
     }
     path = tmp_path / "transforms.json"
     path.write_text(json.dumps({**common, "frames": [frame]}))
-    model, cloud = read_transforms(path)
+    model, cloud, findings = read_transforms(path)
     (camera,), (image,) = model.cameras.values(), model.images.values()
-    assert cloud is None
+    assert (cloud, findings) == (None, ())
     assert (camera.model, camera.width_px, camera.height_px) == ("OPENCV", 100, 80)
     assert camera.parameters == (90.0, 90.0, 51.0, 40.0, -0.1, 0.0, 0.01, 0.0)
     assert image.name == (tmp_path / "a.png").as_posix()

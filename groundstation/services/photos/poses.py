@@ -206,11 +206,12 @@ def choose_poses(
         kept = read_refined(colmap, posed.photos)
         if kept.photos_sha256 == fingerprint(posed.photos):
             return _judged(posed.photos, kept, colmap, was_kept=True)
-    model = named_below(read_poses(colmap), folder)
-    return _fitted(_of_model(model, read_frame(colmap), posed, folder), posed.sizes_px)
+    model, notes = read_poses(colmap)
+    found = _fitted(_of_model(named_below(model, folder), read_frame(colmap), posed, folder), posed.sizes_px)
+    return replace(found, findings=(*notes, *found.findings))
 
 
-def read_poses(place: Path) -> ColmapModel:
+def read_poses(place: Path) -> tuple[ColmapModel, tuple[Finding, ...]]:
     """The model of a COLMAP folder, or of nerfstudio's transforms.json and the folder that has one.
 
     Raises
@@ -221,20 +222,18 @@ def read_poses(place: Path) -> ColmapModel:
     inside = (place / name for name in TRANSFORMS_FILES)
     path = next((each for each in inside if each.is_file()), None) if place.is_dir() else place
     if path is None or (path == place and place.suffix.lower() != ".json"):
-        return read_model(place)
-    model, cloud = read_transforms(path)
+        return read_model(place), ()
+    model, cloud, findings = read_transforms(path)
     if cloud is None or not cloud.is_file():
-        return model
+        return model, findings
     from reconstruction.splats.surfels import read_points
 
     xyz, rgb = read_points(cloud)
     n = len(xyz)
-    return replace(
-        model,
-        points=ColmapPoints(
-            np.arange(1, n + 1), xyz, rgb, np.full(n, -1.0), np.zeros(n + 1, np.int64), np.zeros((0, 2), np.int64)
-        ),
+    points = ColmapPoints(
+        np.arange(1, n + 1), xyz, rgb, np.full(n, -1.0), np.zeros(n + 1, np.int64), np.zeros((0, 2), np.int64)
     )
+    return replace(model, points=points), findings
 
 
 # Photos of which no site is known: a folder with a model of another program.
@@ -298,7 +297,7 @@ def photos_alone(
             "the photos say where they were taken, or make a model of them with 'coarse'",
             place=folder,
         )
-    model = read_poses(place)
+    model, about_model = read_poses(place)
     photos_folder = _folder_of_images(model, folder)
     model = named_below(model, photos_folder)
     read = read_photos(photos_folder, monitor, posed_elsewhere=True)
@@ -323,7 +322,7 @@ def photos_alone(
     about_photos = findings_that_hold(posed, found)
     if own is not None:
         about_photos = (*(one for one in about_photos if one.code != UNPOSED), *_not_in_model(posed, model))
-    findings = (*read.findings, *about_photos, *found.findings)
+    findings = (*read.findings, *about_model, *about_photos, *found.findings)
     return PhotosAlone(replace(found, findings=findings), origin, own)
 
 
