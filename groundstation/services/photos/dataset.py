@@ -70,7 +70,7 @@ def prepare_files(
     InputError
         Photos, site or COLMAP model cannot be used, poses cannot be refined, or the data set cannot be written.
     """
-    if site is not None and poses_within(site) is not None:
+    if site is not None and poses_within(site) is not None and not (site / "site.json").is_file():
         raise InputError(say("is a folder with a model of poses, and no site; name it with --colmap", place=site))
     if site is None:
         if refine is not None:
