@@ -33,7 +33,7 @@ from planning.plan import ANGLE_DECIMALS, HistoryPoint, Plan, Sortie, Viewpoint,
 from planning.request import PlanRequest
 from planning.routing.at_once import flown_at_once, share_out
 from planning.routing.flights import Flight, flight_times, plan_flights
-from planning.routing.legs import n_stops_within
+from planning.routing.legs import LegTable, n_stops_within
 from planning.routing.roadmap import build_roadmap
 from planning.site.free_space import LEG_MARGIN_M, free_space
 from planning.site.records import SiteModel
@@ -201,13 +201,16 @@ ENDING_SHARE = 1.0
 """Of the time that a program spent before it planned, kept for what it does behind it: worth, proof and writing. Both
 grow with the size of a site and with the slowness of a computer."""
 
+LOOKING_SHARE = 0.5
+"""Of the time for ways to views: how long straight legs between these are looked at."""
+
 SHORTEST_ROUTING_S = 1.0
 LONGEST_ROUTING_S = 4.0
 DRAWING_S = 0.3
-FEWEST_ROUTED = 100
+FEWEST_ROUTED = 700
 """Routing gets at least and at most this long; 560 views gain nothing more after 1 s (docs/benchmarks.md). `DRAWING_S`
-of the budget is kept for what comes after the search, and is the least that it gets. So many views are
-routed, for each battery that is asked for, however late it is."""
+of the budget is kept for what comes after the search, and is the least that it gets, and that routing does of views
+that were chosen by their routes. So many views are routed however late it is."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,6 +232,8 @@ class Planned:
         Why sections that may be seen are not, where a share was wanted and is not reached.
     n_left_out
         Views chosen but left out, since the time budget did not last for ways to them.
+    n_too_many
+        Views chosen but left out, since their sorties were more than there are batteries.
     seconds
         Wall time by stage, in order.
     prepared
@@ -251,6 +256,7 @@ class Planned:
     prepared: Prepared = field(repr=False, compare=False)
     open_sections: tuple[OpenSection, ...] = ()
     n_left_out: int = 0
+    n_too_many: int = 0
     most_psnr_db: float | None = None
     before_db: float | None = None
     is_cut_short: bool = False
@@ -300,7 +306,8 @@ def plan_flight(
     trace.record_bound(prepared.problem.reachability.upper_bound)
     has_routes = request.n_batteries is not None or request.least_gain_db is not None
     routing_share = REROUTING_SHARE if has_routes else ROUTING_SHARE
-    routing_s = float(np.clip(routing_share * request.time_budget_s, SHORTEST_ROUTING_S, LONGEST_ROUTING_S))
+    shortest_s = DRAWING_S if has_routes else SHORTEST_ROUTING_S
+    routing_s = float(np.clip(routing_share * request.time_budget_s, shortest_s, LONGEST_ROUTING_S))
     finishing_s = FINISHING_SHARE * request.time_budget_s
     choosing = TimeLimit(max(0.1, limit.remaining_s() - routing_s - finishing_s), also=stop)
     problem = prepared.problem
@@ -320,20 +327,20 @@ def plan_flight(
     n_chosen = len(views.heading_rad)
     # What does not depend on ways comes before these, so that they get the time that is left.
     error, decision = judged()
-    if limit.remaining_s() < routing_s + routing_share * request.time_budget_s:
+    if found.legs is None and limit.remaining_s() < routing_s + routing_share * request.time_budget_s:
         views = _that_can_be_routed(
             problem, views, chosen_for, request, chosen_profile, limit.remaining_s() - DRAWING_S
         )
-    n_left_out = n_chosen - len(views.heading_rad)
+    n_routed = len(views.heading_rad)
     seen = _seen(problem, views, request.locked)
     watch.lap("views")
-    flights = _route(problem, views, request, chosen_profile, limit, routing_s, stop, monitor)
+    flights = _route(problem, views, found.legs, request, chosen_profile, limit, routing_s, stop, monitor)
     while request.n_batteries is not None and len(flights) > request.n_batteries:
         flights = best_flights(problem.model, views, flights, request.n_batteries, n_locked, chosen_for)
         if len(flights) > request.n_batteries:  # all of them have locked views
             views = with_fewer_views(problem.model, views, n_locked)
             seen = _seen(problem, views, request.locked)
-            flights = _route(problem, views, request, chosen_profile, limit, routing_s, stop, monitor)
+            flights = _route(problem, views, found.legs, request, chosen_profile, limit, routing_s, stop, monitor)
     watch.lap("routing")
     seen = tuple(seen[view] for flight in flights for view in flight.views)
     effects = (*prepared.effects, decision)
@@ -350,7 +357,8 @@ def plan_flight(
         watch.seconds,
         prepared,
         _open_sections(problem, plan, counts > 0, request, any_of(stop, limit)),
-        n_left_out,
+        n_chosen - n_routed,
+        n_routed - len(plan.viewpoints),
         None if found.least_error is None else expected_psnr_db(found.least_error),
         expected_psnr_db(error.most_error) if len(photos.heading_rad) else None,
         found.is_cut_short,
@@ -374,8 +382,7 @@ def _that_can_be_routed(
     """The most telling of the views, by what they were chosen for, as many as ways can be found for in time."""
     metric = round_trip_metric(motion_limits(chosen_profile.aircraft, request.rules))
     n_locked = len(request.locked)
-    n_fewest = FEWEST_ROUTED * (request.n_batteries or 1)
-    n_views = max(n_fewest, n_locked, n_stops_within(problem.roadmap, views.positions_enu_m, metric, seconds))
+    n_views = max(FEWEST_ROUTED, n_locked, n_stops_within(problem.roadmap, views.positions_enu_m, metric, seconds))
     if error is None or len(views.heading_rad) <= n_views:
         return most_covering(problem.model, views, n_views, n_locked)
     is_locked = np.arange(len(views.heading_rad)) < n_locked
@@ -518,6 +525,7 @@ def _goal(request: PlanRequest) -> Goal:
 def _route(
     problem: ViewProblem,
     views: ViewpointArrays,
+    legs: LegTable | None,
     request: PlanRequest,
     chosen_profile: Profile,
     limit: TimeLimit,
@@ -526,9 +534,9 @@ def _route(
     monitor: Monitor,
 ) -> tuple[Flight, ...]:
     aircraft, rules = chosen_profile.aircraft, request.rules
-    searching_s = min(routing_s, SHORTEST_ROUTING_S)
-    looking = any_of(stop, TimeLimit(limit.remaining_s() - searching_s))
-    times = flight_times(problem.roadmap, views, aircraft, rules, monitor, stop=looking)
+    left_s = limit.remaining_s() - min(routing_s, SHORTEST_ROUTING_S)
+    looking, hurry = any_of(stop, TimeLimit(LOOKING_SHARE * left_s)), TimeLimit(left_s)
+    times = flight_times(problem.roadmap, views, aircraft, rules, monitor, stop=looking, hurry=hurry, known=legs)
     searching_s = float(np.clip(limit.remaining_s() - DRAWING_S, DRAWING_S, routing_s))
 
     until = any_of(stop, TimeLimit(searching_s))

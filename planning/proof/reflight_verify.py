@@ -22,7 +22,7 @@ import re
 import struct
 import sys
 import zlib
-from functools import partial
+from functools import cached_property, partial
 from itertools import pairwise, product
 from math import ceil, cos, floor, radians, remainder, sin, sqrt
 from pathlib import Path
@@ -147,9 +147,9 @@ def prism(outline: list[Vec], low: float, high: float) -> list[Triangle]:
 class Solids:
     """Triangles in a tree of boxes: (low, high, halves, numbers of the triangles of a leaf)."""
 
-    def __init__(self, triangles: list[Triangle]) -> None:
-        self.triangles = triangles
-        self.tree = self._boxes(list(range(len(triangles))))
+    def __init__(self, triangles: list[Triangle]) -> None: self.triangles = triangles
+    @cached_property
+    def tree(self) -> Any: return self._boxes(list(range(len(self.triangles))))
 
     def _boxes(self, numbers: list[int]) -> Any:
         corners = [corner for k in numbers for corner in self.triangles[k]] or [(0.0, 0.0, 0.0)]

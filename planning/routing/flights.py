@@ -84,8 +84,13 @@ def flight_times(
     monitor: Monitor = QUIET,
     *,
     stop: Stop = never,
+    hurry: Stop = never,
+    known: LegTable | None = None,
 ) -> FlightTimes:
-    """Travel times (with turns), time at each view, and what one battery allows; `stop` as in `build_leg_table`.
+    """Travel times (with turns), time at each view, and what one battery allows.
+
+    `stop` and `hurry` as in `build_leg_table`.
+    Legs are those of the `known` table, which has all views as stops, where there is one.
 
     Raises
     ------
@@ -93,7 +98,11 @@ def flight_times(
         The wind is too strong, or nothing of the battery is left.
     """
     limits = motion_limits(aircraft, rules)
-    table = build_leg_table(roadmap, views.positions_enu_m, round_trip_metric(limits), monitor, stop=stop)
+    if known is None:
+        metric = round_trip_metric(limits)
+        table = build_leg_table(roadmap, views.positions_enu_m, metric, monitor, stop=stop, hurry=hurry)
+    else:
+        table = known.part(views.positions_enu_m)
     travel_s = with_turns_s(table.cost, views.heading_rad, views.pitch_rad, limits, turn_in_flight=rules.turn_in_flight)
     service_s = np.full(len(views.heading_rad), photo_stop_s(aircraft, rules))
     return FlightTimes(table, travel_s, service_s, usable_battery_s(aircraft, rules))

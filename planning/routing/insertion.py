@@ -74,6 +74,36 @@ def _at(route: Ints, at: int) -> int:
 
 
 @kernel
+def insertion_costs_with(travel: Floats, route: Ints, last: int, added: Floats, position: Ints) -> None:
+    """What `insertion_costs` says of a route from what it said before the route's stop number `last` was put in.
+
+    Only places that would have come where that stop is now are looked at anew.
+    """
+    before, stop, behind = _at(route, last - 1), route[last], _at(route, last + 1)
+    first_leg, second_leg = travel[before, stop], travel[stop, behind]
+    for place in range(1, len(travel)):
+        if position[place] == last or len(route) == 1:
+            added[place] = np.inf
+            previous = 0
+            for at in range(len(route) + 1):
+                following = _at(route, at)
+                cost = travel[previous, place] + travel[place, following] - travel[previous, following]
+                if cost < added[place]:
+                    added[place], position[place] = cost, at
+                previous = following
+            continue
+        if position[place] > last:
+            position[place] += 1
+        for at in range(2):
+            if at == 0:
+                cost = travel[before, place] + travel[place, stop] - first_leg
+            else:
+                cost = travel[stop, place] + travel[place, behind] - second_leg
+            if cost < added[place] or (cost == added[place] and last + at < position[place]):
+                added[place], position[place] = cost, last + at
+
+
+@kernel
 def shorten(travel: Floats, route: Ints, least_gain: float) -> None:
     """Reverse stretches of the route, and move stretches of up to three stops, until neither saves any more."""
     k = len(route)
@@ -155,4 +185,5 @@ def compile_kernels() -> None:
     """Compile what this module runs."""
     travel, route = np.ones((3, 3)), np.array([1, 2])
     insertion_costs(travel, route, np.zeros(3), np.zeros(3, np.int64))
+    insertion_costs_with(travel, route, 0, np.zeros(3), np.zeros(3, np.int64))
     shorten(travel, route, 1e-9)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +36,10 @@ MIN_SPACING_M = 0.5
 PAIRS_PER_STEP = 20_000
 ROWS_PER_STEP = 8
 """Shortest ways are searched from so many stops at a time: SciPy holds the interpreter's lock for 1 to 2 ms each."""
+STOPS_PER_STEP = 50
+"""Stops that are joined to hubs at a time."""
+MOST_VIA = 4
+"""Stops, and home, over which ways lead between stops from which none are searched for lack of time."""
 TIGHTEN_ROUNDS = 12
 
 N_TRIED_LEGS = 400
@@ -60,6 +64,32 @@ class LegTable:
     cost: Array
     _is_straight: NDArray[np.bool_]
     _graph: csr_array
+    _nodes: NDArray[np.int64]
+    _nodes_enu_m: Array
+
+    def part(self, stops_enu_m: Array) -> LegTable:
+        """The same costs for some of the stops, shape (k, 3), in their order, without looking for ways again.
+
+        Ways may still lead over the other stops. Stops at the same place share one of the table's.
+
+        Raises
+        ------
+        ValueError
+            One of them is not in the table.
+        """
+        numbers = {tuple(point): number for number, point in enumerate(self.points_enu_m.tolist()) if number > 0}
+        found = [numbers.get(tuple(stop)) for stop in stops_enu_m.tolist()]
+        if None in found:
+            raise ValueError(f"stops_enu_m: expected stops of the table, got {stops_enu_m[found.index(None)]}")
+        kept = np.array([0, *found], np.int64)
+        both = np.ix_(kept, kept)
+        return replace(
+            self,
+            points_enu_m=self.points_enu_m[kept],
+            cost=self.cost[both],
+            _is_straight=self._is_straight[both],
+            _nodes=self._nodes[kept],
+        )
 
     def polyline(self, start: int, end: int) -> Array:
         """The way from one stop to another, shape (k, 3), both ends included; the same in both directions.
@@ -69,15 +99,16 @@ class LegTable:
         InfeasibleError
             There is no way between them.
         """
-        if start > end:
+        first, last = int(self._nodes[start]), int(self._nodes[end])
+        if first > last:
             return self.polyline(end, start)[::-1]
         ends = self.points_enu_m[[start, end]]
         if start == end:
             return ends[:1]
-        if self._is_straight[start, end]:
+        if self._is_straight[start, end] or first == last:
             return ends
-        _, previous = dijkstra(self._graph, directed=False, indices=[start], return_predecessors=True)
-        if previous[0, end] < 0:
+        _, previous = dijkstra(self._graph, directed=False, indices=[first], return_predecessors=True)
+        if previous[0, last] < 0:
             a, b = (", ".join(f"{value:.1f}" for value in place) for place in ends)
             raise InfeasibleError.say(
                 "no way from ({:m}) to ({:m}) m was found that keeps {:g} m from everything; leave the place "
@@ -86,10 +117,10 @@ class LegTable:
                 b,
                 self.roadmap.space.min_distance_m,
             )
-        way = [end]
-        while way[-1] != start:
+        way = [last]
+        while way[-1] != first:
             way.append(int(previous[0, way[-1]]))
-        points = np.concatenate([self.points_enu_m, self.roadmap.nodes_enu_m])[way[::-1]]
+        points = self._nodes_enu_m[way[::-1]]
         # The vertical part above home is kept.
         first = 1 if start == 0 else 0
         return np.concatenate([points[:first], pull_tight(self.roadmap, points[first:], self.metric)])
@@ -129,11 +160,19 @@ def _skip_vertices(points: Array, clear: Callable[[Array, Array], NDArray[np.boo
 
 
 def build_leg_table(
-    roadmap: Roadmap, stops_enu_m: Array, metric: LegMetric, monitor: Monitor = QUIET, *, stop: Stop = never
+    roadmap: Roadmap,
+    stops_enu_m: Array,
+    metric: LegMetric,
+    monitor: Monitor = QUIET,
+    *,
+    stop: Stop = never,
+    hurry: Stop = never,
 ) -> LegTable:
     """Costs between home and stops, shape (n, 3), all of which must be allowed positions.
 
     When `stop` asks for an end, straight legs not yet looked at, the longest, are replaced by ways over shorter ones.
+    When `hurry` does, stops not yet joined to hubs are not, and ways between stops from which none were searched yet
+    are those over home or the first stops; they are no longer where they are drawn.
     """
     space = roadmap.space
     n = len(stops_enu_m) + 1
@@ -149,25 +188,31 @@ def build_leg_table(
         from_stop = a > 0
         straight[a[from_stop], b[from_stop]] = space.legs_clear(points[a[from_stop]], points[b[from_stop]])
     straight |= straight.T
-    graph = _with_stops(roadmap, points, straight, metric)
-    monitor.report(say("finding ways around"), 0, n)
+    graph = _with_stops(roadmap, points, straight, metric, hurry)
     cost = np.full((n, n), np.inf)
     cost[i, j] = np.where(straight[i, j], metric(points[j] - points[i]), np.inf)
     cost = np.minimum(cost, cost.T)
     np.fill_diagonal(cost, 0.0)
     needs_way = np.flatnonzero(~np.isfinite(cost).all(axis=1))
+    via: list[Array] = []
     for start, end in chunks(len(needs_way), ROWS_PER_STEP):
         monitor.report(say("finding ways around"), start, len(needs_way))
         rows = needs_way[start:end]
+        if start > 0 and hurry():
+            detour = np.min([around[:, None] + around for around in via], axis=0)
+            cost = np.where(np.isfinite(cost), cost, detour)
+            break
         around = dijkstra(graph, directed=False, indices=rows)[:, :n]
         cost[rows] = np.where(np.isfinite(cost[rows]), cost[rows], around)
-    return LegTable(roadmap, metric, points, np.minimum(cost, cost.T), straight, graph)
+        via += list(around[: MOST_VIA - len(via)])
+    nodes = np.concatenate([points, roadmap.nodes_enu_m])
+    return LegTable(roadmap, metric, points, np.minimum(cost, cost.T), straight, graph, np.arange(n), nodes)
 
 
 def n_stops_within(roadmap: Roadmap, stops_enu_m: Array, metric: LegMetric, seconds: float) -> int:
-    """Number of the stops, shape (n, 3), n > 0, for which a leg table can be made in so many seconds, at least one.
+    """Number of the stops, shape (n, 3), n > 0, for which a leg table can be made in so many seconds, in a hurry.
 
-    The time that a leg and a search for ways take here and now is measured on a few of them.
+    At least one. The time that a leg and a search for ways take here and now is measured on a few of them.
     """
     nodes, n_nodes = roadmap.nodes_enu_m, len(roadmap.nodes_enu_m)
     number = np.arange(N_TRIED_LEGS)
@@ -179,16 +224,17 @@ def n_stops_within(roadmap: Roadmap, stops_enu_m: Array, metric: LegMetric, seco
     started_s = time.perf_counter()
     dijkstra(graph, directed=False, indices=[0])
     search_s = time.perf_counter() - started_s
-    per_stop_s = (N_HUBS + roadmap.n_column + 2 * ROADMAP_NEIGHBOURS) * leg_s + search_s
-    return max(1, int((seconds - PAIRS_PER_STEP * leg_s) / per_stop_s))
+    return max(1, int((seconds - PAIRS_PER_STEP * leg_s - ROWS_PER_STEP * search_s) / (2 * ROADMAP_NEIGHBOURS * leg_s)))
 
 
-def _with_stops(roadmap: Roadmap, points: Array, straight: NDArray[np.bool_], metric: LegMetric) -> csr_array:
+def _with_stops(
+    roadmap: Roadmap, points: Array, straight: NDArray[np.bool_], metric: LegMetric, hurry: Stop
+) -> csr_array:
     """Roadmap plus stops: nodes 0 to n - 1 are home and stops, then the roadmap's."""
     n, nodes = len(points), roadmap.nodes_enu_m
     all_points = np.concatenate([points, nodes])
     column = np.stack([np.zeros(roadmap.n_column, np.int64), n + np.arange(roadmap.n_column)], axis=1)
-    joined = joined_nodes(roadmap, points[1:]) + np.array([1, n])
+    joined = joined_nodes(roadmap, points[1:], hurry) + np.array([1, n])
     distance = np.where(straight, cdist(points, points), np.inf)
     nearest = np.argpartition(distance, min(ROADMAP_NEIGHBOURS, n) - 1, axis=1)[:, :ROADMAP_NEIGHBOURS]
     a = np.repeat(np.arange(n), nearest.shape[1])
@@ -200,14 +246,22 @@ def _with_stops(roadmap: Roadmap, points: Array, straight: NDArray[np.bool_], me
     return csr_array(coo_array((weight, (edges[:, 0], edges[:, 1])), shape=(size, size)))
 
 
-def joined_nodes(roadmap: Roadmap, stops_enu_m: Array) -> NDArray[np.int64]:
-    """(stop, node) pairs, shape (p, 2), joined by a clear leg: nearest nodes, those above home, and hubs."""
+def joined_nodes(roadmap: Roadmap, stops_enu_m: Array, hurry: Stop = never) -> NDArray[np.int64]:
+    """(stop, node) pairs, shape (p, 2), joined by a clear leg: nearest nodes, those above home, and hubs.
+
+    When `hurry` asks for an end, stops not yet looked at get their nearest nodes alone.
+    """
     near = roadmap.nearest_clear(stops_enu_m, ROADMAP_NEIGHBOURS)
     lost = np.setdiff1d(np.arange(len(stops_enu_m)), near[:, 0])
     further = roadmap.nearest_clear(stops_enu_m[lost], MOST_NEIGHBOURS)
     further[:, 0] = lost[further[:, 0]]
     n_nodes, n_column = len(roadmap.nodes_enu_m), roadmap.n_column
     hubs = np.concatenate([np.arange(n_column), np.arange(n_column, n_nodes, -(-n_nodes // N_HUBS))])
-    pairs = np.stack(np.meshgrid(np.arange(len(stops_enu_m)), hubs, indexing="ij"), axis=-1).reshape(-1, 2)
-    clear = roadmap.space.legs_clear(stops_enu_m[pairs[:, 0]], roadmap.nodes_enu_m[pairs[:, 1]])
-    return np.concatenate([near, further, pairs[clear]])
+    joined = [near, further]
+    for start, end in chunks(len(stops_enu_m), STOPS_PER_STEP):
+        if hurry():
+            break
+        pairs = np.stack(np.meshgrid(np.arange(start, end), hubs, indexing="ij"), axis=-1).reshape(-1, 2)
+        clear = roadmap.space.legs_clear(stops_enu_m[pairs[:, 0]], roadmap.nodes_enu_m[pairs[:, 1]])
+        joined.append(pairs[clear])
+    return np.concatenate(joined)

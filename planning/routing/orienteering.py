@@ -44,6 +44,9 @@ NOISE = (0.0, 0.1, 0.3, 1.0)
 LARGEST_SHARE = 1.0
 """A round takes out up to this share of the stops."""
 
+GROWN = 0.1
+"""Part by which stops must grow in number, once it is late, for their worth to be looked at again."""
+
 WORTHLESS = 1e-9
 """Stops that add less than this part of what the best adds are left out: it is rounding."""
 
@@ -128,11 +131,11 @@ def solve_orienteering(
         raise ValueError(f"budget_s: expected a positive number, got {budget_s}")
     if len(required) > n_sorties:
         raise ValueError(f"required: expected at most {n_sorties} sorties, got {len(required)}")
-    search = _Search(travel_s, service_s, budget_s, n_sorties, n if max_stops is None else max_stops, gain, seed)
+    search = _Search(travel_s, service_s, budget_s, n_sorties, n if max_stops is None else max_stops, gain, seed, stop)
     search.require(required)
     trace = Trace() if trace is None else trace
     bound = search.bound()
-    search.fill(1.0, np.ones(n))
+    search.fill(1.0, np.ones(n), is_first=True)
     search.keep_if_best()
     trace.record(search.best.value)
     last_success = 0
@@ -173,6 +176,7 @@ class _Search:
         max_stops: int,
         gain: CoverageGain,
         seed: int,
+        stop: Stop,
     ) -> None:
         n = len(service_s)
         self.travel_s = np.ascontiguousarray(travel_s, np.float64)
@@ -181,6 +185,7 @@ class _Search:
         self.max_stops = max_stops
         self.gain = gain
         self.rng = np.random.default_rng(seed)
+        self.stop = stop
         alone_s = travel_s[0] + self.service_s + travel_s[:, 0]
         self.is_open = alone_s <= self.budget_s
         self.is_open[0] = False
@@ -211,20 +216,35 @@ class _Search:
         legs = self.travel_s[np.concatenate([[0], route]), np.concatenate([route, [0]])]
         return math.fsum([*legs, *self.service_s[route]])
 
-    def _set_route(self, i: int, route: Ints) -> None:
-        """Replace a route by one with the same stops, or whose stops the caller adds to or takes from the gain."""
+    def _set_route(self, i: int, route: Ints, last: int | None = None) -> None:
+        """Replace a route by one with the same stops, or whose stops the caller adds to or takes from the gain.
+
+        Or by itself with one stop put in, its stop number `last`, which is quicker.
+        """
         self.routes[i] = route
         self.spare_s[i] = self.budget_s - self.duration_s(route) if len(route) < self.max_stops else -math.inf
-        insertion.insertion_costs(self.travel_s, route, self.added_s[i], self.position[i])
+        if last is None:
+            insertion.insertion_costs(self.travel_s, route, self.added_s[i], self.position[i])
+        else:
+            insertion.insertion_costs_with(self.travel_s, route, last, self.added_s[i], self.position[i])
 
     def _snapshot(self) -> _Snapshot:
         time_s = math.fsum(self.duration_s(route) for route in self.routes)
         return _Snapshot(tuple(route for route in self.routes), self.gain.value, time_s)
 
-    def fill(self, exponent: float, noise: Floats) -> None:
-        """Put in stops while any fits that adds worth, the best by worth^exponent / time * noise first."""
+    def fill(self, exponent: float, noise: Floats, *, is_first: bool = False) -> None:
+        """Put in stops while any fits that adds worth, the best by worth^exponent / time * noise first.
+
+        Broken off when an end is asked for. The first time it goes on all the same, and looks again at what stops are
+        worth only once there are more by the part `GROWN`.
+        """
+        worth, n_then, n_now = np.zeros(0), 0, 0
         while True:
-            worth = np.concatenate([[0.0], self.gain.marginals()])
+            is_late = n_now > 0 and self.stop()
+            if is_late and not is_first:
+                return
+            if not is_late or n_now >= (1.0 + GROWN) * n_then:
+                worth, n_then = np.concatenate([[0.0], self.gain.marginals()]), n_now
             needed_s = self.added_s + self.service_s
             needed_s[needed_s > self.spare_s[:, None]] = math.inf
             route = np.argmin(needed_s, axis=0)
@@ -241,7 +261,9 @@ class _Search:
             i = int(route[place])
             self.gain.add(place - 1)
             self.is_open[place] = False
-            self._set_route(i, np.insert(self.routes[i], self.position[i, place], place))
+            at = int(self.position[i, place])
+            self._set_route(i, np.insert(self.routes[i], at, place), at)
+            n_now += 1
 
     def take_out(self, i: int, is_out: NDArray[np.bool_]) -> None:
         """Take stops out of one route and put the others in a shorter order."""
@@ -262,6 +284,8 @@ class _Search:
         noise = np.exp(self.rng.choice(NOISE) * self.rng.standard_normal(len(self.service_s) - 1))
         exponent = float(self.rng.choice(EXPONENTS))
         self.fill(exponent, noise)
+        if self.stop():
+            return
         for i, route in enumerate(self.routes):
             self.take_out(i, np.zeros(len(route), np.bool_))
         self.fill(exponent, noise)
@@ -294,6 +318,8 @@ class _Search:
             return False
         while True:
             self.best = self._snapshot()
+            if self.stop():
+                return True
             for i, route in enumerate(self.routes):
                 self._set_route(i, self._reordered(route))
             self.fill(1.0, np.ones(len(self.service_s) - 1))
@@ -317,7 +343,9 @@ class _Search:
         inner = cost[1:-1, 1:-1]
         cost[1:-1, 1:-1] = (inner + inner.T) / 2.0
         cost[0, -1] = cost[-1, 0] = 0.0
-        order = improve_tour(cost, np.arange(len(cost)), closed=False, max_kicks=ROUTE_KICKS * len(cost))
+        order = improve_tour(
+            cost, np.arange(len(cost)), closed=False, max_kicks=ROUTE_KICKS * len(cost), stop=self.stop
+        )
         shorter = places[order[1:-1]]
         return min(route, shorter, key=self.duration_s)
 

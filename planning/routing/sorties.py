@@ -216,7 +216,8 @@ class _Solver:
     def solve(self, max_rounds: int | None) -> Sorties:
         """Cut a tour, do with fewer sorties where possible, then shorten them."""
         sorties = self._record(self._cut_tour())
-        fewest = fewest_sorties(self.problem) if self.problem.fewest_first else len(sorties)
+        with_fewer = self.problem.fewest_first and not self.stop()
+        fewest = fewest_sorties(self.problem) if with_fewer else len(sorties)
         while len(sorties) > fewest and (fewer := self._with_one_less(sorties)) is not None:
             sorties = self._record(fewer)
         if len(sorties) > 1 or not self.is_symmetric:

@@ -35,9 +35,9 @@ from planning.viewpoints.spacing import ANYWHERE, SpacingRule, rounding_spacing_
 
 Array = NDArray[np.float64]
 
-MAX_CANDIDATES, FEWEST_CANDIDATES = 700, 100
-"""Candidates whose routes are compared: their leg table takes some seconds. So few for each battery are, however late
-it is."""
+MAX_CANDIDATES, CANDIDATES_EACH, FEWEST_EACH = 700, 350, 200
+"""Candidates whose routes are compared: 700, or so many for each battery where that is more, since a battery lasts for
+200 to 300 of them; their leg table takes some seconds. However late it is, so few for each battery are, up to 700."""
 
 LOOKING_SHARE, CHOOSING_SHARE, LEGS_SHARE, WAYS_SHARE = 0.3, 0.3, 0.3, 0.3
 """Parts of the time left each: how long candidates are looked at, how long some of them are chosen, and how long legs
@@ -122,12 +122,14 @@ def views_within_budget(
     spacing_m = rounding_spacing_m(aircraft.min_waypoint_spacing_m)
     choice = Choice(problem, weights, covered, locked, spacing_m, seed, stop, Trace(trace.clock), monitor)
     free = candidate_pool(problem, seed, parameters.n_candidates, stop)
-    n_most, apart = max(0, MAX_CANDIDATES - n_locked), spacing_rule(free.views, locked, spacing_m)
+    n_most = max(0, max(MAX_CANDIDATES, CANDIDATES_EACH * n_batteries) - n_locked)
+    n_fewest = min(MAX_CANDIDATES, FEWEST_EACH * n_batteries)
+    apart = spacing_rule(free.views, locked, spacing_m)
     is_cut_short = stop()
 
     def n_in_time() -> int:
         in_time = _n_routed_in_time(problem, free.views, aircraft, rules, WAYS_SHARE * remaining_s())
-        return min(n_most, max(FEWEST_CANDIDATES * n_batteries, in_time))
+        return min(n_most, max(n_fewest, in_time))
 
     if error is None:
         n_free = n_in_time()
@@ -136,7 +138,7 @@ def views_within_budget(
         free = shortlist(free, weights, covered, n_free, spacing=spacing_rule(free.views, locked, spacing_m))
     else:
         looking = _part_of(LOOKING_SHARE, remaining_s, stop)
-        state = error_state(error, free.views, locked, apart, monitor, looking)
+        state = error_state(error, free.views, locked, apart, monitor, looking, n_fewest)
         n_free, n_known = n_in_time(), len(free.views.heading_rad)
         is_cut_short = is_cut_short or len(state.bounds) < n_known or n_free < min(n_most, n_known)
         kept = np.zeros(n_known, np.bool_)
@@ -144,8 +146,8 @@ def views_within_budget(
         kept[choose_for_least_error(state, n_free, monitor, choosing)] = True
         free = keep(free, kept)
     pool = join_pools(Pool(locked, problem.model.elements(locked)), free)
-    legs = _part_of(LEGS_SHARE, remaining_s, stop)
-    times = flight_times(problem.roadmap, pool.views, aircraft, rules, monitor, stop=legs)
+    legs, ways = (_part_of(share, remaining_s, stop) for share in (LEGS_SHARE, LEGS_SHARE + WAYS_SHARE))
+    times = flight_times(problem.roadmap, pool.views, aircraft, rules, monitor, stop=legs, hurry=ways)
     cover = CoverGain(pool.elements, weights)
     gain = cover if error is None else ErrorGain(error_state(error, pool.views))
     selection = solve_orienteering(
@@ -172,9 +174,9 @@ def views_within_budget(
     if error is not None:
         trace.record(problem.model.covered_count(views))
         least = max(error.floor, error.most_error - selection.bound)
-        return ViewSet(views, least_error=least, is_cut_short=is_cut_short)
+        return ViewSet(views, least_error=least, is_cut_short=is_cut_short, legs=times.table)
     everything = float(weights[np.unique(pool.elements.items)].sum())
-    return ViewSet(views, min(selection.bound, everything), is_cut_short=is_cut_short)
+    return ViewSet(views, min(selection.bound, everything), is_cut_short=is_cut_short, legs=times.table)
 
 
 def _n_routed_in_time(
@@ -182,7 +184,7 @@ def _n_routed_in_time(
 ) -> int:
     """Number of the views for which ways can be found in so many seconds."""
     if math.isinf(seconds):
-        return MAX_CANDIDATES
+        return len(views.heading_rad)
     metric = round_trip_metric(motion_limits(aircraft, rules))
     return n_stops_within(problem.roadmap, views.positions_enu_m, metric, seconds)
 

@@ -15,6 +15,7 @@ from planning.base.progress import Monitor, Stop, Trace
 from planning.coverage.model import CoverageModel
 from planning.coverage.reachability import Reachability
 from planning.plan import Viewpoint, ViewpointArrays, viewpoint_arrays
+from planning.routing.legs import LegTable
 from planning.routing.roadmap import Roadmap
 from planning.site.free_space import LEG_MARGIN_M, SAFETY_MARGIN_M, FreeSpace
 
@@ -61,13 +62,15 @@ class ViewSet:
 
     `bound` is an upper bound on what as many views of the same candidates could cover, and `least_error` a lower one on
     the expected error that they could leave; None where a method has none. `is_cut_short` says that fewer candidates
-    were compared than there are, since an end was asked for.
+    were compared than there are, since an end was asked for. `legs` has the views among its stops, where they were
+    chosen by their routes.
     """
 
     views: ViewpointArrays
     bound: float | None = None
     least_error: float | None = None
     is_cut_short: bool = False
+    legs: LegTable | None = None
 
 
 class Optimiser(Protocol):

@@ -179,6 +179,9 @@ def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
             "{} views were left out, since the time did not last for ways to them; allow it more time", n_left_out
         )
         yield Finding(Severity.WARNING, "time-budget", text, "", float(n_left_out), 0.0, "views")
+    if planned.n_too_many:
+        text = say("{} views were left out, since their sorties took more batteries than there are", planned.n_too_many)
+        yield Finding(Severity.NOTE, "too-many-views", text, "", float(planned.n_too_many), 0.0, "views")
     n_views = len(plan.viewpoints)
     is_late = planned.is_cut_short or planned.n_left_out > 0
     if planned.is_cut_short:

@@ -21,11 +21,11 @@ from groundstation.services.plan.planning import plan_site
 from planning.geo.height_field import HeightField
 from planning.geo.mesh import write_mesh
 from planning.parameters import Constraints, GreedyParameters
-from planning.proof.make import proof_path
-from planning.proof.reflight_verify import CLAIMS, Case, Mission, flies, judged
+from planning.proof.make import proof_of, proof_path
+from planning.proof.reflight_verify import CLAIMS, Case, Mission, Solids, flies, judged
 from planning.request import PlanRequest
 from planning.site.bundled import write_scene
-from planning.site.file import write_site
+from planning.site.file import read_site, write_site
 from planning.site.terrain import terrain_of
 from tests.planning.plan_cases import kiosk
 
@@ -73,6 +73,24 @@ def test_all_claims_on_a_planned_flight_are_proved(planned: Path) -> None:
         *("files", "sorties", "gimbal", "airspace", "distance", "no-fly", "zones", "return", "battery", "apart"),
         *("coverage", "reachable"),
     ]
+
+
+def test_a_proof_is_made_without_the_tree_that_only_checking_needs(
+    planned: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It takes longer than all the rest on the mesh of an IFC office."""
+    site, plan = planned / "kiosk.site.json", planned / "kiosk.plan.json"
+    written = (planned / "kiosk.plan.proof").read_bytes()
+
+    def refused(*_: Any) -> None:
+        raise AssertionError("a tree was built")
+
+    monkeypatch.setattr(Solids, "_boxes", refused)
+    model = read_site(site)
+    made = proof_of(site, plan, plan.read_bytes(), model, known=json.loads(written))
+    assert json.loads(made)["legs"] == json.loads(written)["legs"]
+    with pytest.raises(AssertionError, match="a tree was built"):
+        _ = Case(planned, [site.read_bytes(), plan.read_bytes(), made]).solids.tree
 
 
 def test_the_verifier_runs_alone_from_the_folder_of_a_mission(planned: Path, tmp_path: Path) -> None:

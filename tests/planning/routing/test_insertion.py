@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from planning.routing.insertion import insertion_costs, shorten
+from planning.routing.insertion import insertion_costs, insertion_costs_with, shorten
 from tests.planning.routing_cases import random_distances
 
 
@@ -31,6 +31,25 @@ def test_insertion_is_as_cheap_as_the_best_of_all_positions(n: int, k: int, seed
         costs = [cost_of(travel, option) - cost_of(travel, route.tolist()) for option in longer]
         assert added[place] == pytest.approx(min(costs))
         assert costs[position[place]] == pytest.approx(min(costs))
+
+
+@given(n=st.integers(1, 12), seed=st.integers(0, 1000), are_equal=st.booleans(), has_gaps=st.booleans())
+def test_costs_after_a_stop_was_put_in_are_those_found_anew(n: int, seed: int, are_equal: bool, has_gaps: bool) -> None:
+    rng = np.random.default_rng(seed)
+    travel = rng.integers(0, 4, (n + 1, n + 1)).astype(float) if are_equal else rng.random((n + 1, n + 1))
+    if has_gaps:
+        travel[rng.random(travel.shape) < 0.2] = np.inf
+    route, added, position = np.zeros(0, np.int64), np.zeros(n + 1), np.zeros(n + 1, np.int64)
+    insertion_costs(travel, route, added, position)
+    for place in rng.permutation(n) + 1:
+        last = int(rng.integers(len(route) + 1))
+        route = np.insert(route, last, place)
+        insertion_costs_with(travel, route, last, added, position)
+        anew, there = np.zeros(n + 1), np.zeros(n + 1, np.int64)
+        insertion_costs(travel, route, anew, there)
+        assert np.array_equal(added[1:], anew[1:])
+        is_possible = np.isfinite(anew)
+        assert np.array_equal(position[is_possible], there[is_possible])
 
 
 def neighbours(route: list[int]) -> list[list[int]]:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 import shapely
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import dijkstra
 
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InfeasibleError, OperationCancelled
@@ -23,6 +26,7 @@ from planning.site.bundled import ORIGIN, SCENES, panel_grid
 from planning.site.free_space import LEG_MARGIN_M, free_space
 from planning.site.records import Airspace, Obstacle, Site, SiteModel, box_geometry
 from tests.planning.plan_cases import dense_points, distances, inside_zone, kiosk, solid_triangles
+from tests.planning.routing_cases import Counting
 
 Floats = NDArray[np.float64]
 
@@ -102,6 +106,49 @@ def test_legs_not_looked_at_in_time_become_ways_over_shorter_ones(scene: str, mo
     triangles = solid_triangles(block() if scene == "block" else SCENES[scene]())
     for start, end in [(1, 3), (2, 9), (4, 11)]:
         assert float(distances(dense_points(cut.polyline(start, end), 0.3), triangles).min()) >= DISTANCE_M
+
+
+@pytest.mark.parametrize("scene", ["block", "court"])
+@pytest.mark.parametrize("n_asked", [0, 1, 3])
+def test_in_a_hurry_ways_are_found_all_the_same_and_are_no_longer_than_was_said(
+    scene: str, n_asked: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = table_of(scene)
+    for name, value in {"PAIRS_PER_STEP": 30, "ROWS_PER_STEP": 2, "STOPS_PER_STEP": 5}.items():
+        monkeypatch.setattr(legs, name, value)
+    searches: list[int] = []
+
+    def counted(*arguments: Any, **named: Any) -> Any:
+        searches.append(1)
+        return dijkstra(*arguments, **named)
+
+    monkeypatch.setattr(legs, "dijkstra", counted)
+    hurry = Counting(n_asked)
+    cut = build_leg_table(whole.roadmap, whole.points_enu_m[1:], leg_length, stop=lambda: True, hurry=hurry)
+    assert len(searches) == max(1, n_asked - 2)  # of blocks: two are joined to hubs before
+    assert np.isfinite(cut.cost).all()
+    np.testing.assert_array_equal(cut.cost, cut.cost.T)
+    assert (drawn(cut) <= cut.cost + 1e-6).all()
+    assert np.median(cut.cost[0, 1:] / whole.cost[0, 1:]) < 1.3
+    triangles = solid_triangles(block() if scene == "block" else SCENES[scene]())
+    for start, end in [(0, 1), (2, 9), (4, 11)]:
+        assert float(distances(dense_points(cut.polyline(start, end), 0.3), triangles).min()) >= DISTANCE_M
+
+
+@pytest.mark.parametrize("scene", ["kiosk", "block", "court"])
+def test_a_part_of_a_table_has_the_same_legs(scene: str) -> None:
+    table, kept = table_of(scene), np.array([11, 2, 7, 2])
+    part = table.part(table.points_enu_m[kept])
+    both = np.array([0, *kept])
+    np.testing.assert_array_equal(part.cost, table.cost[np.ix_(both, both)])
+    np.testing.assert_array_equal(part.points_enu_m, table.points_enu_m[both])
+    for start, end in itertools.product(range(len(both)), repeat=2):
+        if both[start] != both[end]:
+            np.testing.assert_array_equal(part.polyline(start, end), table.polyline(both[start], both[end]))
+        assert np.array_equal(part.polyline(start, end), part.polyline(end, start)[::-1])
+    np.testing.assert_array_equal(part.part(table.points_enu_m[[7]]).polyline(0, 1), table.polyline(0, 7))
+    with pytest.raises(ValueError, match="stops of the table"):
+        table.part(table.points_enu_m[[3]] + 0.001)
 
 
 @pytest.mark.parametrize("scene", ["kiosk", "block", "court"])

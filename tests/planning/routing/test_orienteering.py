@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import itertools
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -205,6 +206,54 @@ def test_the_same_seed_and_rounds_give_the_same_selection() -> None:
     ]
     assert runs[0] == runs[1]
     assert runs[0] != runs[2]
+
+
+class LookedAt(Prizes):
+    """Worth that counts how often it is asked for, in all and once `late` says so."""
+
+    def __init__(self, prizes: np.ndarray, late: Callable[[], bool]) -> None:
+        super().__init__(prizes)
+        self.late, self.n, self.n_late = late, 0, 0
+
+    def marginals(self) -> np.ndarray:
+        self.n += 1
+        self.n_late += self.late()
+        return super().marginals()
+
+
+@pytest.mark.parametrize("n_asked", [300, 500, 1000])
+def test_a_round_is_broken_off_and_leaves_what_was_best_before(n_asked: int) -> None:
+    """Every stop that is put in is one question whether to end: some 90 at first, and as many in long rounds."""
+    travel_s, service_s, prizes = random_distances(101, 0), np.full(100, 3.0), np.arange(1.0, 101.0)
+    stop = Counting(n_asked)
+    gain = LookedAt(prizes, lambda: stop.left < 0)
+    selection = solve_orienteering(travel_s, service_s, 400.0, 2, gain, stop=stop)
+    check(selection, travel_s, service_s, 400.0, 2)
+    assert gain.n > n_asked / 3
+    assert gain.n_late <= 2, "one for the bound, and one that was about to be asked for"
+    assert selection.value == sum(prizes[stop] for sortie in selection.sorties for stop in sortie)
+    first = solve_orienteering(travel_s, service_s, 400.0, 2, Prizes(prizes), max_rounds=0)
+    assert first.value <= selection.value + 1e-9
+
+
+def test_the_first_stops_are_put_in_however_late_it_is_with_few_looks_at_their_worth() -> None:
+    travel_s, sees = coverage_case(100)
+    gain = cover_gain(sees)
+    looks: list[int] = []
+    marginals = gain.marginals
+
+    def counted() -> np.ndarray:
+        looks.append(1)
+        return marginals()
+
+    gain.marginals = counted  # type: ignore[method-assign]
+    late = solve_orienteering(travel_s, np.full(100, 3.0), 150.0, 3, gain, stop=lambda: True)
+    n_stops = sum(map(len, late.sorties))
+    check(late, travel_s, np.full(100, 3.0), 150.0, 3)
+    assert n_stops > 40
+    assert len(looks) < 0.8 * n_stops
+    first = solve_orienteering(travel_s, np.full(100, 3.0), 150.0, 3, cover_gain(sees), max_rounds=0)
+    assert late.value >= 0.9 * first.value
 
 
 def test_stopping_returns_the_best_so_far_and_cancelling_does_not() -> None:

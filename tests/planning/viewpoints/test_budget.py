@@ -13,9 +13,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from groundstation.services.plan.planning import plan_document_site
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InfeasibleError, OperationCancelled
+from planning.base.findings import is_flyable
 from planning.base.progress import QUIET, Monitor, Stop, TimeLimit, Trace, never
+from planning.checks import check_plan
 from planning.coverage.model import CoverageModel, element_weights
 from planning.coverage.reachability import find_reachable
 from planning.coverage.sections import SectionGrid, panel_frames
@@ -25,6 +28,7 @@ from planning.plan import ViewpointArrays
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.routing.flights import Flight, FlightTimes, flight_times
+from planning.routing.legs import LegTable, build_leg_table
 from planning.routing.roadmap import Roadmap, build_roadmap
 from planning.site.bundled import SCENES
 from planning.site.free_space import free_space
@@ -34,6 +38,7 @@ from planning.viewpoints.candidates import Pool, candidate_pool, keep
 from planning.viewpoints.least_error import image_error_model
 from planning.viewpoints.problem import ViewProblem, take
 from tests.planning.plan_cases import StopAfter, kiosk
+from tests.planning.routing_cases import Cancelling
 from tests.slow import slow
 
 M3E = profile("m3e").aircraft
@@ -166,8 +171,8 @@ def test_fewer_candidates_are_compared_where_the_time_does_not_last(
         return flight_times(roadmap, views, *arguments, **named)
 
     monkeypatch.setattr("planning.viewpoints.budget.flight_times", counted)
-    monkeypatch.setattr("planning.viewpoints.budget.MAX_CANDIDATES", 40)
-    monkeypatch.setattr("planning.viewpoints.budget.FEWEST_CANDIDATES", 15)
+    few_compared(monkeypatch, 40, 40)
+    monkeypatch.setattr("planning.viewpoints.budget.FEWEST_EACH", 15)
     error = None if objective == "sections" else image_error_model(problem(), kiosk())[0]
     found = [
         views_within_budget(
@@ -190,15 +195,38 @@ def test_fewer_candidates_are_compared_where_the_time_does_not_last(
     assert problem().model.covered_count(found[0].views) > 0
     for late, ample in zip(found[1].views, found[2].views, strict=True):
         assert np.array_equal(late, ample)
+    for each in found:
+        assert each.legs is not None
+        reused = flight_times(problem().roadmap, each.views, M3E, rules_for(45.0), known=each.legs)
+        assert reused.travel_s.shape == (len(each.views.heading_rad) + 1,) * 2
+        assert np.isfinite(reused.travel_s).all()
+
+
+@pytest.mark.parametrize(("n_batteries", "n_compared"), [(1, 20), (2, 20), (3, 30), (10, 100)])
+def test_more_candidates_are_compared_for_more_batteries(
+    n_batteries: int, n_compared: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    few_compared(monkeypatch, 20, 10)
+    compared: list[int] = []
+
+    def counted(roadmap: Roadmap, views: ViewpointArrays, *arguments: Any, **named: Any) -> FlightTimes:
+        compared.append(len(views.heading_rad))
+        return flight_times(roadmap, views, *arguments, **named)
+
+    monkeypatch.setattr("planning.viewpoints.budget.flight_times", counted)
+    choose(45.0, n_batteries, stop=StopAfter(200))
+    assert compared == [n_compared]
+
+
+def few_compared(monkeypatch: pytest.MonkeyPatch, n_most: int, n_each: int) -> None:
+    """Let few candidates be compared, so that the search ends by itself."""
+    monkeypatch.setattr("planning.viewpoints.budget.MAX_CANDIDATES", n_most)
+    monkeypatch.setattr("planning.viewpoints.budget.CANDIDATES_EACH", n_each)
 
 
 def test_cancelling_comes_through() -> None:
-    class Cancelling:
-        def report(self, stage: str, done: float, total: float) -> None:
-            raise OperationCancelled("cancelled")
-
     with pytest.raises(OperationCancelled):
-        choose(60.0, 1, monitor=Cancelling())
+        choose(60.0, 1, monitor=Cancelling(0, OperationCancelled))
 
 
 def flights_of(groups: list[list[int]]) -> tuple[Flight, ...]:
@@ -235,7 +263,7 @@ def test_plans_have_no_more_sorties_than_batteries_and_cover_more_with_more(
 
     Among so few candidates the search ends by itself, long before its time is up.
     """
-    monkeypatch.setattr("planning.viewpoints.budget.MAX_CANDIDATES", 60)
+    few_compared(monkeypatch, 60, 20)
     covered, prepared = [], None
     for n_batteries in (1, 2, 3):
         request = PlanRequest(
@@ -267,3 +295,62 @@ def test_a_whole_plan_keeps_the_number_of_batteries(n_batteries: int) -> None:
     plan = plan_flight(kiosk(), request).plan
     assert 1 <= len(plan.sorties) <= n_batteries
     assert math.isclose(sum(sortie.duration_s for sortie in plan.sorties), plan.duration_s)
+
+
+@pytest.mark.parametrize(("n_batteries", "time_budget_s"), [(20, 0.1), (7, 1.0), (3, 600.0)])
+def test_what_a_plan_for_many_batteries_says_is_what_it_flies(
+    n_batteries: int, time_budget_s: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Legs are looked for once, and no view is left out for lack of ways; however the clock goes."""
+    few_compared(monkeypatch, 60, 20)
+    tables: list[LegTable] = []
+
+    def told(*arguments: Any, **named: Any) -> LegTable:
+        tables.append(build_leg_table(*arguments, **named))
+        return tables[-1]
+
+    monkeypatch.setattr("planning.routing.flights.build_leg_table", told)
+    request = PlanRequest(
+        n_batteries=n_batteries,
+        constraints=Constraints(min_distance_m=5.0),
+        greedy=FEW,
+        time_budget_s=time_budget_s,
+        rules=rules_for(45.0),
+    )
+    planned = plan_document_site(kiosk(), request)
+    plan, said = planned.plan, {finding.code: finding for finding in planned.findings}
+    assert len(tables) == 1
+    assert is_flyable(check_plan(plan, kiosk()))
+    assert 1 <= len(plan.sorties) <= n_batteries
+    assert sum(len(sortie.viewpoint_ids) for sortie in plan.sorties) == len(plan.viewpoints)
+    assert planned.n_left_out == 0
+    assert ("few-compared" in said) == planned.is_cut_short
+    assert ("too-many-views" in said) == (planned.n_too_many > 0)
+    assert ("fewer-sorties" in said) == (len(plan.sorties) < n_batteries)
+    if "fewer-sorties" in said:
+        assert (said["fewer-sorties"].value, said["fewer-sorties"].limit) == (len(plan.sorties), n_batteries)
+        assert ("allow it more time" in said["fewer-sorties"].message) == planned.is_cut_short
+
+
+@pytest.mark.parametrize("n_passed", [0, 3, 10])
+def test_cancelling_a_plan_for_batteries_throws_it_away(n_passed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    few_compared(monkeypatch, 60, 20)
+    request = PlanRequest(n_batteries=7, greedy=FEW, time_budget_s=600.0, rules=rules_for(45.0))
+    with pytest.raises(OperationCancelled):
+        plan_flight(kiosk(), request, monitor=Cancelling(n_passed, OperationCancelled))
+    searching = CancellingAt("orienteering", n_passed)
+    with pytest.raises(OperationCancelled):
+        plan_flight(kiosk(), request, monitor=searching)
+    assert searching.left < 0
+
+
+class CancellingAt:
+    """Monitor that cancels at the n-th report of a stage."""
+
+    def __init__(self, stage: str, n: int) -> None:
+        self.stage, self.left = stage, n
+
+    def report(self, stage: str, done: float, total: float) -> None:
+        self.left -= stage == self.stage
+        if self.left < 0:
+            raise OperationCancelled("cancelled")
