@@ -245,6 +245,8 @@ class Planned:
         The same with the photos alone that were there already; None without any.
     is_cut_short
         Fewer candidates were compared than there are, since the time budget did not last for all.
+    are_all_taken
+        All candidates that were compared are flown, although there are more.
     """
 
     plan: Plan
@@ -260,6 +262,7 @@ class Planned:
     most_psnr_db: float | None = None
     before_db: float | None = None
     is_cut_short: bool = False
+    are_all_taken: bool = False
 
 
 def plan_flight(
@@ -362,6 +365,7 @@ def plan_flight(
         None if found.least_error is None else expected_psnr_db(found.least_error),
         expected_psnr_db(error.most_error) if len(photos.heading_rad) else None,
         found.is_cut_short,
+        found.are_all_taken,
     )
 
 

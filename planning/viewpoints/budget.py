@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -125,7 +126,7 @@ def views_within_budget(
     n_most = max(0, max(MAX_CANDIDATES, CANDIDATES_EACH * n_batteries) - n_locked)
     n_fewest = min(MAX_CANDIDATES, FEWEST_EACH * n_batteries)
     apart = spacing_rule(free.views, locked, spacing_m)
-    is_cut_short = stop()
+    is_cut_short, n_known = stop(), len(free.views.heading_rad)
 
     def n_in_time() -> int:
         in_time = _n_routed_in_time(problem, free.views, aircraft, rules, WAYS_SHARE * remaining_s())
@@ -133,13 +134,13 @@ def views_within_budget(
 
     if error is None:
         n_free = n_in_time()
-        is_cut_short = is_cut_short or n_free < min(n_most, len(free.views.heading_rad))
+        is_cut_short = is_cut_short or n_free < min(n_most, n_known)
         free, _, _ = choice.greedily(free, n_free, np.inf)
         free = shortlist(free, weights, covered, n_free, spacing=spacing_rule(free.views, locked, spacing_m))
     else:
         looking = _part_of(LOOKING_SHARE, remaining_s, stop)
         state = error_state(error, free.views, locked, apart, monitor, looking, n_fewest)
-        n_free, n_known = n_in_time(), len(free.views.heading_rad)
+        n_free = n_in_time()
         is_cut_short = is_cut_short or len(state.bounds) < n_known or n_free < min(n_most, n_known)
         kept = np.zeros(n_known, np.bool_)
         choosing = _part_of(CHOOSING_SHARE, remaining_s, stop)
@@ -170,13 +171,17 @@ def views_within_budget(
             times.budget_s,
         )
     chosen = np.concatenate([np.arange(n_locked), chosen[chosen >= n_locked]])
-    views = take(pool.views, chosen)
+    found = ViewSet(
+        take(pool.views, chosen),
+        is_cut_short=is_cut_short,
+        are_all_taken=len(chosen) == len(pool.views.heading_rad) < n_locked + n_known,
+        legs=times.table,
+    )
     if error is not None:
-        trace.record(problem.model.covered_count(views))
-        least = max(error.floor, error.most_error - selection.bound)
-        return ViewSet(views, least_error=least, is_cut_short=is_cut_short, legs=times.table)
+        trace.record(problem.model.covered_count(found.views))
+        return replace(found, least_error=max(error.floor, error.most_error - selection.bound))
     everything = float(weights[np.unique(pool.elements.items)].sum())
-    return ViewSet(views, min(selection.bound, everything), is_cut_short=is_cut_short, legs=times.table)
+    return replace(found, bound=min(selection.bound, everything))
 
 
 def _n_routed_in_time(

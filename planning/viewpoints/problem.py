@@ -62,14 +62,15 @@ class ViewSet:
 
     `bound` is an upper bound on what as many views of the same candidates could cover, and `least_error` a lower one on
     the expected error that they could leave; None where a method has none. `is_cut_short` says that fewer candidates
-    were compared than there are, since an end was asked for. `legs` has the views among its stops, where they were
-    chosen by their routes.
+    were compared than there are, since an end was asked for, and `are_all_taken` that all compared are in the set while
+    there are more. `legs` has the views among its stops, where they were chosen by their routes.
     """
 
     views: ViewpointArrays
     bound: float | None = None
     least_error: float | None = None
     is_cut_short: bool = False
+    are_all_taken: bool = False
     legs: LegTable | None = None
 
 

@@ -195,6 +195,8 @@ def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
         yield Finding(severity, "fewer-views", text, "", float(n_views), float(request.n_views), "views")
     n_sorties, n_batteries = len(plan.sorties), request.n_batteries
     if n_batteries is not None and n_sorties < n_batteries:
+        if planned.are_all_taken and not is_late:
+            reason = say("no more viewpoints are compared for so many; ask for a number of views to fly more")
         text = say("takes {} of {} batteries: {}", n_sorties, n_batteries, reason)
         yield Finding(severity, "fewer-sorties", text, "", float(n_sorties), float(n_batteries), "sorties")
     yield from _not_good_enough(request, planned, is_late)

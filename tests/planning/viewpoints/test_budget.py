@@ -332,6 +332,25 @@ def test_what_a_plan_for_many_batteries_says_is_what_it_flies(
         assert ("allow it more time" in said["fewer-sorties"].message) == planned.is_cut_short
 
 
+def test_a_plan_that_flies_all_that_were_compared_does_not_say_that_there_is_no_more(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    few_compared(monkeypatch, 12, 1)
+    request = PlanRequest(
+        n_batteries=9,
+        constraints=Constraints(min_distance_m=5.0),
+        greedy=FEW,
+        time_budget_s=600.0,
+        rules=rules_for(90.0),
+    )
+    planned = plan_document_site(kiosk(), request)
+    assert len(planned.plan.viewpoints) == 12
+    assert not planned.is_cut_short
+    assert planned.are_all_taken
+    (said,) = (finding.message for finding in planned.findings if finding.code == "fewer-sorties")
+    assert said.endswith("no more viewpoints are compared for so many; ask for a number of views to fly more")
+
+
 @pytest.mark.parametrize("n_passed", [0, 3, 10])
 def test_cancelling_a_plan_for_batteries_throws_it_away(n_passed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     few_compared(monkeypatch, 60, 20)
