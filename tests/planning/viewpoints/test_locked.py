@@ -73,7 +73,8 @@ def test_locked_viewpoints_are_in_the_plan_as_they_are_and_nothing_else_has_thei
     poses = {(v.position_enu_m, v.heading_deg, v.gimbal_pitch_deg) for v in plan.viewpoints}
     assert len(poses) == len(plan.viewpoints)
     problems = {f.code for f in check_plan(plan, kiosk()) if f.severity != "ok"}
-    assert problems <= {"leg-spacing", "heading"}, "a locked heading of 300 degrees stays as it is"
+    # A locked heading of 300 degrees stays as it is, and so near not all of a pane is in focus.
+    assert problems <= {"leg-spacing", "heading", "depth-of-field"}
     turned = tuple(replace(v, heading_deg=-60.0) if v.heading_deg == 300.0 else v for v in plan.viewpoints)
     assert_keeps_the_contract(kiosk(), replace(plan, viewpoints=turned))
     model = prepared("kiosk").problem.model
