@@ -85,6 +85,8 @@ class SettingsPage(QWidget):
         self._definition_said = QLabel()
         self._definition_said.setWordWrap(True)
         form.addRow(self.tr("Camera definition"), self.definition)
+        for label in (self._said, self._video_said, self._definition_said):
+            _say(label, "muted", "")
         layout = QVBoxLayout(self)
         layout.addWidget(self.needs_rtk)
         layout.addWidget(muted(self.tr("Start waits for RTK, and a warning comes when it is lost in flight.")))
@@ -153,18 +155,18 @@ class SettingsPage(QWidget):
             return
         self._offered = offered
         if offered.problem:
-            self._video_said.setText(translated(offered.problem, UnitSystem.METRIC))
+            _say(self._video_said, "muted", translated(offered.problem, UnitSystem.METRIC))
         elif offered.url != self._kept.video:
-            self._video_said.setText(self.tr("The vehicle's camera offers {0}").format(offered.url))
+            _say(self._video_said, "muted", self.tr("The vehicle's camera offers {0}").format(offered.url))
 
     def _video_typed(self) -> None:
         """Take the address of the video, or say what is wrong with it."""
         try:
             url = typed_video(self.video.text())
         except InputError as error:
-            self._video_said.setText(translated(str(error), UnitSystem.METRIC))
+            _say(self._video_said, "muted", translated(str(error), UnitSystem.METRIC))
             return
-        self._video_said.setText("")
+        _say(self._video_said, "muted", "")
         if url != self._kept.video:
             self._kept = replace(self._kept, video=url)
             self.valueChanged.emit(self.value())

@@ -270,6 +270,10 @@ class FlyController(QObject):
             state = FlightState.BUSY
         elif self.is_connected and view is not None and (self.is_for_shown_plan or view.state.is_armed):
             state = flight_state(view)
+        if state is FlightState.IN_AIR and self.active is not None and self.active.link is LinkState.LOST:
+            state = FlightState.SIGNAL_LOST
+        if state is FlightState.CONNECTED and self.active is not None and self.active.took_off_s is not None:
+            state = FlightState.BUSY  # it has landed, and its report is not there yet
         self._context.note(flight=state, sortie=self.number)
 
     # Connecting
@@ -596,6 +600,7 @@ class FlyController(QObject):
                 aircraft.connects_again = False
                 self._prepare(aircraft, self._connect)
         if aircraft is self.selected:
+            self._tell_state()
             self.linkChanged.emit(event.link)
 
     def _take_end(self, aircraft: LiveAircraft, active: ActiveFlight, event: FlightEnded) -> None:
@@ -617,6 +622,7 @@ class FlyController(QObject):
             self._tell(aircraft, Severity.WARNING, event.problem, "flight.kept")
         active.took_off_s = None
         if aircraft is self.selected:
+            self._tell_state()
             self.flightEnded.emit(event)
         elif event.report is not None:
             self._tell(aircraft, Severity.OK, say("landed; select it for its report"), "flight.landed")

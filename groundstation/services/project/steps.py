@@ -78,6 +78,7 @@ class FlightState(StrEnum):
     ON_BOARD = "on-board"
     READY = "ready"
     IN_AIR = "in-air"
+    SIGNAL_LOST = "signal-lost"
 
 
 @dataclass(frozen=True, slots=True)
@@ -276,6 +277,9 @@ def _fly(now: Milestones) -> Guidance:
             return Guidance(is_done, say("ready to take off"), say("start; it asks first"), say("Start"), Act.TAKE_OFF)
         case FlightState.IN_AIR:
             return Guidance(is_done, say("in the air"), say("watch the flight until it has landed"), "", None)
+        case FlightState.SIGNAL_LOST:
+            further_text = say("keep the aircraft in sight: it goes on by itself, and is shown again once it is heard")
+            return Guidance(is_done, say("in the air, and its signal is lost"), further_text, "", None)
         case _:
             pass
     return Guidance(False, photos, say("connect; a simulation needs no aircraft"), say("Connect"), Act.CONNECT)

@@ -39,7 +39,7 @@ from tests.gui.driving import (
     turn_until_idle,
     type_into,
 )
-from tests.services.live_cases import Reopening, planned
+from tests.services.live_cases import Reopening, planned, simulation
 from tests.slow import slow
 
 ONE_IN = 100
@@ -174,10 +174,11 @@ def test_pause_resume_return_then_a_top_up_and_the_rest_of_the_sortie(applicatio
     ask_for(page, Request.RESUME)
     turn_until(application, lambda: page.buttons.button(Request.PAUSE).isEnabled())
     ask_for(page, Request.RETURN)
-    turn_until(application, lambda: has_landed(page))
+    bar, offered = controller.window.next_step, set()
+    turn_until(application, lambda: has_landed(page) or offered.add(bar.button.text()))
+    assert offered == {""}, "while the report is made nothing leads on yet, and no other upload above all"
     missing = {row[0] for row in page.report.rows() if row[2] != "taken"}
     assert missing
-    bar = controller.window.next_step
     turn_until(application, lambda: bar.text().startswith(f"Done: landed early; {6 - len(missing)} of 6 photos taken."))
     assert bar.button.text() == "Resume sortie"
     assert not is_done(Step.FLY, controller.context.milestones)
@@ -238,12 +239,35 @@ def test_losing_the_link_shows_a_band_and_is_survived(application, radio, contro
     turn_until(application, page.band.isVisible)
     assert "SIGNAL LOST" in page.band.text()
     assert page.buttons.button(Request.RETURN).isEnabled()
+    bar = controller.window.next_step
+    assert bar.text().startswith("Done: in the air, and its signal is lost. Next: keep the aircraft in sight")
     controller.window.show_tab("site")
     assert page.band.isVisible()
     controller.window.show_tab("fly")
     radio.cut.is_unplugged.clear()
     turn_until(application, lambda: page.band.isHidden() and page.controller.active.link is LinkState.ALIVE)
     assert "link found again" in page.notes.texts()
+    turn_until(application, lambda: bar.text().startswith("Done: in the air. Next: watch the flight"))
+
+
+@pytest.mark.slow
+def test_a_return_with_a_low_battery_is_told_with_its_reason_and_leads_to_the_rest(
+    application, controller, page, monkeypatch
+):
+    """A pause, in which the battery that was enough for the sortie comes down to where the autopilot turns home."""
+    turns_home = {"BATT_FS_LOW_ACT": 2.0, "BATT_CAPACITY": 3300.0, "BATT_LOW_MAH": 0.28 * 3300.0}
+    vehicle = simulation(20.0, charge=0.345, parameters=turns_home)
+    monkeypatch.setattr(page.controller, "_connection", lambda *_: vehicle)
+    connect(application, page)
+    take_off(application, page)
+    ask_for(page, Request.PAUSE)
+    turn_until(application, lambda: has_landed(page))
+    bar = controller.window.next_step
+    turn_until(application, lambda: bar.text().startswith("Done: landed early; "))
+    assert bar.button.text() == "Resume sortie"
+    assert not is_done(Step.FLY, controller.context.milestones)
+    assert "Battery 1 is low" in page.notes.texts()
+    assert "broken off for low battery" in "\n".join(page.findings.texts())
 
 
 @pytest.mark.slow

@@ -79,6 +79,7 @@ WAITED = {
     FlightState.BUSY: {"flight": FlightState.CONNECTED},
     FlightState.ON_BOARD: {"flight": FlightState.READY},
     FlightState.IN_AIR: {"flight": FlightState.APART, "flown": WHOLE},
+    FlightState.SIGNAL_LOST: {"flight": FlightState.IN_AIR},
 }
 
 
