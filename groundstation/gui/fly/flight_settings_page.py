@@ -64,13 +64,14 @@ class SettingsPage(QWidget):
         form.addRow(self.tr("Battery on board"), self.battery)
         form.addRow(self.tr("Operator number"), self.operator)
         form.addRow(self.tr("Serial number"), self.serial)
-        form.addRow(self.tr("RTK corrections"), self.corrections)
+        # Addresses have the whole width: beside its title half of the example that says their form is cut off.
+        _add_below(form, self.tr("RTK corrections"), self.corrections)
         form.addRow(self.tr("Their password"), self.password)
         self.video, self._video_said = QLineEdit(), muted("")
         self._offered: OfferedVideo | None = None
         self.video.setPlaceholderText(VIDEO_EXAMPLE)
         self.video.setToolTip(self.tr("The camera's stream, by RTSP, or as an MPEG transport stream by UDP"))
-        form.addRow(self.tr("Video"), self.video)
+        _add_below(form, self.tr("Video"), self.video)
         self.definition = FileBox(
             self.tr("Choose file ..."),
             self.tr("Camera definition file"),
@@ -242,6 +243,13 @@ class SettingsPage(QWidget):
 
     def _edited(self, _is_on: bool) -> None:
         self.valueChanged.emit(self.value())
+
+
+def _add_below(form: Form, title: str, field: QWidget) -> None:
+    label = QLabel(title)
+    label.setBuddy(field)
+    form.addRow(label)
+    form.addRow(field)
 
 
 def _say(label: QLabel, role: str, text: str) -> None:

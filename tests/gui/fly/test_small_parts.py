@@ -9,6 +9,7 @@ from groundstation.services.jobs.runner import JobRunner
 from groundstation.services.project.document import Document
 from groundstation.services.project.session import Session
 from planning.base.findings import Severity
+from tests.gui.driving import turn_until
 
 
 @pytest.fixture
@@ -163,3 +164,23 @@ def test_each_aircraft_has_a_row_and_many_have_one_line_each(application):
     assert box.button(3).text().startswith("\u2717 Aircraft 3"), "no warning is told by colour alone"
     box.set_rows((), 1)
     assert not box.isVisibleTo(None)
+
+
+def test_examples_of_addresses_are_read_whole_and_what_says_nothing_takes_no_room(application):
+    from groundstation.gui.fly.flight_settings_page import SettingsPage
+    from groundstation.gui.widgets.scrolling import scrolled
+    from groundstation.gui.window.main_window import DETAIL_WIDTH_PX
+
+    page = SettingsPage()
+    area = scrolled(page)
+    area.resize(DETAIL_WIDTH_PX, 900)
+    area.show()
+    turn_until(application, lambda: page.video.width() > 0 and page.isVisible())
+    for line in (page.corrections, page.video):
+        assert line.fontMetrics().horizontalAdvance(line.placeholderText()) < line.width() - 8
+    assert not any(label.isVisible() for label in (page._said, page._video_said, page._definition_said))
+    page.video.setText("nowhere")
+    page.video.editingFinished.emit()
+    assert page.video_said()
+    assert page._video_said.isVisible()
+    area.close()
