@@ -3,6 +3,7 @@
 import numpy as np
 import torch
 
+from planning.base.jit import kernel
 from reconstruction.splats.rasterising.numba_blend import (
     BLOCK_COLUMNS,
     BLOCK_ROWS,
@@ -88,9 +89,7 @@ def test_splats_that_are_no_ellipses_are_worked_wherever_they_are_seen():
 
 
 def test_the_exponential_is_exact_to_the_last_digits():
-    import numba
-
-    @numba.njit
+    @kernel
     def all_of(q, out):
         for at in range(0, len(q), 8):
             store_lanes(out, at, exp_half(spread(np.float32(0.5)), load_lanes(q, at)))

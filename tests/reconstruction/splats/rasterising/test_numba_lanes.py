@@ -1,9 +1,9 @@
 """Vectors of eight numbers in kernels, against NumPy's float32."""
 
-import numba
 import numpy as np
 import pytest
 
+from planning.base.jit import kernel
 from reconstruction.splats.rasterising.numba_lanes import (
     N_LANES,
     any_of,
@@ -26,7 +26,7 @@ from reconstruction.splats.rasterising.numba_lanes import (
 TWO, THREE = np.float32(2.0), np.float32(3.0)
 
 
-@numba.njit
+@kernel
 def work_out(given, out, bits):
     """Rows of `given`, shape (8, 8), put together in all ways there are; row 9 of `out` takes the sums of all rows."""
     fetch(given, 3)
