@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import dijkstra
-from scipy.spatial.distance import cdist
+from scipy.spatial.distance import cdist, pdist
 
 from planning.base.errors import InfeasibleError
 from planning.base.jit import chunks
@@ -44,6 +44,8 @@ TIGHTEN_ROUNDS = 12
 
 N_TRIED_LEGS = 400
 """Legs on which it is measured how long one takes."""
+PAIRS_PER_LEG = 12
+"""Pairs of stops that are put in order, and whose costs are filled in, while one leg is looked at."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -178,7 +180,7 @@ def build_leg_table(
     n = len(stops_enu_m) + 1
     points = np.concatenate([space.home_enu_m[None], stops_enu_m])
     i, j = np.triu_indices(n, 1)
-    nearest_first = np.argsort(np.linalg.norm(points[j] - points[i], axis=1), kind="stable")
+    nearest_first = np.argsort(pdist(points), kind="stable")
     straight = np.zeros((n, n), np.bool_)
     for start, end in chunks(len(i), PAIRS_PER_STEP):
         monitor.report(say("checking legs"), start, len(i))
@@ -190,8 +192,9 @@ def build_leg_table(
     straight |= straight.T
     graph = _with_stops(roadmap, points, straight, metric, hurry)
     cost = np.full((n, n), np.inf)
-    cost[i, j] = np.where(straight[i, j], metric(points[j] - points[i]), np.inf)
-    cost = np.minimum(cost, cost.T)
+    is_straight = straight[i, j]
+    a, b = i[is_straight], j[is_straight]
+    cost[a, b] = cost[b, a] = metric(points[b] - points[a])
     np.fill_diagonal(cost, 0.0)
     needs_way = np.flatnonzero(~np.isfinite(cost).all(axis=1))
     via: list[Array] = []
@@ -224,7 +227,10 @@ def n_stops_within(roadmap: Roadmap, stops_enu_m: Array, metric: LegMetric, seco
     started_s = time.perf_counter()
     dijkstra(graph, directed=False, indices=[0])
     search_s = time.perf_counter() - started_s
-    return max(1, int((seconds - PAIRS_PER_STEP * leg_s - ROWS_PER_STEP * search_s) / (2 * ROADMAP_NEIGHBOURS * leg_s)))
+    # In legs: n stops take 2 k n for their k nearest nodes and stops, and n^2 / 2 pairs.
+    n_legs = (seconds - ROWS_PER_STEP * search_s) / leg_s - PAIRS_PER_STEP
+    each = 2.0 * ROADMAP_NEIGHBOURS * PAIRS_PER_LEG
+    return max(1, int(np.sqrt(each**2 + 2.0 * PAIRS_PER_LEG * max(0.0, n_legs)) - each))
 
 
 def _with_stops(

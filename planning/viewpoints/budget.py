@@ -36,14 +36,14 @@ from planning.viewpoints.spacing import ANYWHERE, SpacingRule, rounding_spacing_
 
 Array = NDArray[np.float64]
 
-MAX_CANDIDATES, CANDIDATES_EACH, FEWEST_EACH = 700, 350, 200
-"""Candidates whose routes are compared: 700, or so many for each battery where that is more, since a battery lasts for
-200 to 300 of them; their leg table takes some seconds. However late it is, so few for each battery are, up to 700."""
+N_COMPARED, N_EACH, MOST_COMPARED, FEWEST_EACH = 700, 350, 3500, 200
+"""Candidates whose routes are compared: 700, or 350 for each battery where that is more, since one lasts for 200 to 350
+of them; at most 3500, whose legs take 1 GB. However late it is, 200 for each battery are, up to 700."""
 
 LOOKING_SHARE, CHOOSING_SHARE, LEGS_SHARE, WAYS_SHARE = 0.3, 0.3, 0.3, 0.3
 """Parts of the time left each: how long candidates are looked at, how long some of them are chosen, and how long legs
-between these are looked at. So many are chosen as ways around can be found for in the last. The rest is for the
-search."""
+between these, and ways where there are none, are looked for. So many are chosen as fit into the last two in a hurry.
+The rest is for the search."""
 
 CHOICE_DEPTHS = (1, 2, 3)
 """Candidates are the greedy choices for covering each section once, then twice and so on: variety to route by."""
@@ -123,13 +123,13 @@ def views_within_budget(
     spacing_m = rounding_spacing_m(aircraft.min_waypoint_spacing_m)
     choice = Choice(problem, weights, covered, locked, spacing_m, seed, stop, Trace(trace.clock), monitor)
     free = candidate_pool(problem, seed, parameters.n_candidates, stop)
-    n_most = max(0, max(MAX_CANDIDATES, CANDIDATES_EACH * n_batteries) - n_locked)
-    n_fewest = min(MAX_CANDIDATES, FEWEST_EACH * n_batteries)
+    n_most = max(0, min(MOST_COMPARED, max(N_COMPARED, N_EACH * n_batteries)) - n_locked)
+    n_fewest = min(N_COMPARED, FEWEST_EACH * n_batteries)
     apart = spacing_rule(free.views, locked, spacing_m)
     is_cut_short, n_known = stop(), len(free.views.heading_rad)
 
     def n_in_time() -> int:
-        in_time = _n_routed_in_time(problem, free.views, aircraft, rules, WAYS_SHARE * remaining_s())
+        in_time = _n_routed_in_time(problem, free.views, aircraft, rules, (LEGS_SHARE + WAYS_SHARE) * remaining_s())
         return min(n_most, max(n_fewest, in_time))
 
     if error is None:

@@ -202,11 +202,12 @@ def test_fewer_candidates_are_compared_where_the_time_does_not_last(
         assert np.isfinite(reused.travel_s).all()
 
 
-@pytest.mark.parametrize(("n_batteries", "n_compared"), [(1, 20), (2, 20), (3, 30), (10, 100)])
+@pytest.mark.parametrize(("n_batteries", "n_compared"), [(1, 20), (2, 20), (3, 30), (10, 60)])
 def test_more_candidates_are_compared_for_more_batteries(
     n_batteries: int, n_compared: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     few_compared(monkeypatch, 20, 10)
+    monkeypatch.setattr("planning.viewpoints.budget.MOST_COMPARED", 60)
     compared: list[int] = []
 
     def counted(roadmap: Roadmap, views: ViewpointArrays, *arguments: Any, **named: Any) -> FlightTimes:
@@ -220,8 +221,8 @@ def test_more_candidates_are_compared_for_more_batteries(
 
 def few_compared(monkeypatch: pytest.MonkeyPatch, n_most: int, n_each: int) -> None:
     """Let few candidates be compared, so that the search ends by itself."""
-    monkeypatch.setattr("planning.viewpoints.budget.MAX_CANDIDATES", n_most)
-    monkeypatch.setattr("planning.viewpoints.budget.CANDIDATES_EACH", n_each)
+    monkeypatch.setattr("planning.viewpoints.budget.N_COMPARED", n_most)
+    monkeypatch.setattr("planning.viewpoints.budget.N_EACH", n_each)
 
 
 def test_cancelling_comes_through() -> None:
