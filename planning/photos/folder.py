@@ -10,10 +10,11 @@ from datetime import datetime
 from pathlib import Path
 
 from planning.base.errors import InputError
+from planning.base.files import open_input_file
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
-from planning.photos.jpeg import JPEG_START
+from planning.photos.jpeg import JPEG_START, PHOTO_FILE
 from planning.photos.metadata import read_photo
 from planning.photos.record import PhotoMetadata
 
@@ -127,9 +128,9 @@ def _is_jpeg(path: Path) -> bool:
     if not is_other_picture(path):
         return False
     try:
-        with path.open("rb") as file:
+        with open_input_file(path, PHOTO_FILE) as file:
             return file.read(len(JPEG_START)) == JPEG_START
-    except OSError:
+    except InputError:
         return False
 
 

@@ -115,6 +115,28 @@ IN_WINDOW = {
     "it needs no import; 'plan' takes it as it is": QT_TRANSLATE_NOOP(
         "Sentences", "it needs no import: open it as a site (Site tab, Open)"
     ),
+    (
+        "holds no COLMAP model (such as sparse/0) and no transforms.json; name it with --colmap, name a site if "
+        "the photos say where they were taken, or make a model of them with 'coarse'"
+    ): QT_TRANSLATE_NOOP(
+        "Sentences",
+        "holds no COLMAP model (such as sparse/0) and no transforms.json; open a site first if the photos say where "
+        "they were taken, or make a model of them: “From photos alone” on the Photos tab",
+    ),
+    (
+        "the camera model {0} is not supported; expected one of {1}; undistort the pictures first, such as with "
+        "COLMAP's image_undistorter, whose model 'prepare --colmap' reads"
+    ): QT_TRANSLATE_NOOP(
+        "Sentences",
+        "the camera model {0} is not supported; expected one of {1}; undistort the pictures first, such as with "
+        "COLMAP's image_undistorter",
+    ),
+    "is a folder with a model of poses, and no site; name it with --colmap": QT_TRANSLATE_NOOP(
+        "Sentences", "only the command line works with it"
+    ),
+    "poses are refined in the frame of a site; name it, or leave --refine out": QT_TRANSLATE_NOOP(
+        "Sentences", "only the command line works with it"
+    ),
     "'tradeoff route' takes plans": QT_TRANSLATE_NOOP("Sentences", "only the command line works with it"),
     (
         "{0}; a project cannot be opened without its site: put the file back from a copy, or make a new project with "

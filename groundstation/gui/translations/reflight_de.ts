@@ -2007,6 +2007,10 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
 <context>
     <name>FolderController</name>
     <message>
+        <source>A data set for plain splats was made of {0}: {1}</source>
+        <translation>Ein Datensatz für einfache Splats wurde gemacht aus {0}: {1}</translation>
+    </message>
+    <message>
         <source>Read the data set</source>
         <translation>Datensatz lesen</translation>
     </message>
@@ -5200,6 +5204,10 @@ Blickrichtung: {3}</translation>
         <translation>Ordner für den Datensatz</translation>
     </message>
     <message>
+        <source>Open or import a site first: photos are placed on it. “From photos alone” makes one. Photos with a COLMAP or nerfstudio model are trained without one, on the Reconstruct tab.</source>
+        <translation>Öffnen oder importieren Sie zuerst einen Standort: darauf werden die Fotos eingeordnet. „Nur aus Fotos“ macht einen. Fotos mit einem Modell von COLMAP oder nerfstudio werden ohne einen trainiert, im Reiter Rekonstruktion.</translation>
+    </message>
+    <message>
         <source>Press a panel, or choose it with arrows; the space bar takes it out or puts it back.</source>
         <translation>Drücken Sie auf eine Scheibe oder wählen Sie sie mit den Pfeilen; die Leertaste nimmt sie heraus oder setzt sie ein.</translation>
     </message>
@@ -5218,10 +5226,6 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Folder: {0}</source>
         <translation>Ordner: {0}</translation>
-    </message>
-    <message>
-        <source>Open or import a site first: photos are placed on it.</source>
-        <translation>Öffnen oder importieren Sie zuerst einen Standort: darauf werden die Fotos eingeordnet.</translation>
     </message>
     <message>
         <source>Read the photos of the flight.</source>
@@ -6066,6 +6070,10 @@ Blickrichtung: {3}</translation>
         <translation>Beispielprojekt</translation>
     </message>
     <message>
+        <source>Bundled site</source>
+        <translation>Beispiel</translation>
+    </message>
+    <message>
         <source>Map tiles (*.mbtiles *.pmtiles)</source>
         <translation>Kartenkacheln (*.mbtiles *.pmtiles)</translation>
     </message>
@@ -6080,6 +6088,14 @@ Blickrichtung: {3}</translation>
     <message>
         <source>{0}: this folder is not there any more; was it moved or renamed?</source>
         <translation>{0}: Dieser Ordner ist nicht mehr da; wurde er verschoben oder umbenannt?</translation>
+    </message>
+    <message>
+        <source>Open the model</source>
+        <translation>Modell öffnen</translation>
+    </message>
+    <message>
+        <source>Open {0}</source>
+        <translation>{0} öffnen</translation>
     </message>
     <message>
         <source>Save project as</source>
@@ -8319,6 +8335,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Byte {0} sagt, dass {1} Einträge folgen, aber die restlichen {2} Bytes fassen höchstens {3}; die Datei ist beschädigt oder abgeschnitten: neu schreiben</translation>
     </message>
     <message>
+        <source>cannot be decoded as a picture</source>
+        <translation>lässt sich nicht als Bild lesen</translation>
+    </message>
+    <message>
         <source>cannot be read as a GeoTIFF ({0}); copy it again</source>
         <translation>kann nicht als GeoTIFF gelesen werden ({0}); noch einmal kopieren</translation>
     </message>
@@ -9557,16 +9577,8 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>hat kein Gebäude „{0}“ zur Auswahl: Nur CityGML- und CityJSON-Dateien werden als mehrere Gebäude gelesen</translation>
     </message>
     <message>
-        <source>has no dataset.json, but a COLMAP model in {0}; &apos;prepare PHOTOS SITE --colmap&apos; makes a data set of it, and where there is no site, &apos;coarse PHOTOS&apos; makes one of the photos alone</source>
-        <translation>hat keine dataset.json, aber ein COLMAP-Modell in {0}; &apos;prepare PHOTOS SITE --colmap&apos; macht daraus einen Datensatz, und wo es keinen Standort gibt, macht &apos;coarse PHOTOS&apos; einen aus den Fotos allein</translation>
-    </message>
-    <message>
         <source>has no heights below the airspace of the site, which lies at {0}, {1} (tile {2}); give files that cover it</source>
         <translation>hat keine Höhen unter dem Luftraum des Standorts, der bei {0}, {1} liegt (Kachel {2}); Dateien angeben, die ihn abdecken</translation>
-    </message>
-    <message>
-        <source>has no panels, and {0} learns what panels mirror; train plain splats instead, or find its panels first</source>
-        <translation>hat keine Scheiben, und {0} lernt, was Scheiben spiegeln; trainieren Sie stattdessen einfache Splats, oder suchen Sie zuerst seine Scheiben</translation>
     </message>
     <message>
         <source>has no photo &apos;{0}&apos;, which is to be scored; name photos of its views</source>
@@ -9661,6 +9673,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>enthält kein .jpg-Foto, aber {0} anderer Art, das erste {1}; speichern Sie sie als JPEG mit allem, was die Kamera hineingeschrieben hat</translation>
     </message>
     <message>
+        <source>holds no COLMAP model (such as sparse/0) and no transforms.json; name it with --colmap, name a site if the photos say where they were taken, or make a model of them with &apos;coarse&apos;</source>
+        <translation>enthält weder ein COLMAP-Modell (etwa sparse/0) noch eine transforms.json; geben Sie es mit --colmap an, oder einen Standort, wenn die Fotos sagen, wo sie aufgenommen wurden, oder machen Sie mit &apos;coarse&apos; ein Modell aus ihnen</translation>
+    </message>
+    <message>
         <source>holds no position of the aircraft; a log of the whole flight with GNSS reception is needed</source>
         <translation>enthält keinen Ort des Fluggeräts; nötig ist ein Log des ganzen Fluges mit GNSS-Empfang</translation>
     </message>
@@ -9745,6 +9761,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>in der Luft</translation>
     </message>
     <message>
+        <source>in the air, and its signal is lost</source>
+        <translation>in der Luft, und sein Signal ist verloren</translation>
+    </message>
+    <message>
         <source>in the sun</source>
         <translation>in der Sonne</translation>
     </message>
@@ -9787,6 +9807,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>invalid choice: %(value)r (choose from %(choices)s)</source>
         <translation>ungültige Wahl: %(value)r (möglich sind %(choices)s)</translation>
+    </message>
+    <message>
+        <source>is a folder with a model of poses, and no site; name it with --colmap</source>
+        <translation>ist ein Ordner mit einem Modell der Posen, und kein Standort; geben Sie ihn mit --colmap an</translation>
+    </message>
+    <message>
+        <source>is a picture of the kind {0} with the name of a JPEG file; save it as JPEG, with all that the camera wrote into it</source>
+        <translation>ist ein Bild der Art {0} mit dem Namen einer JPEG-Datei; speichern Sie es als JPEG, mit allem, was die Kamera hineingeschrieben hat</translation>
+    </message>
+    <message>
+        <source>is a pointer of Git LFS in the place of the photo; get it by &apos;git lfs pull&apos;</source>
+        <translation>ist ein Verweis von Git LFS anstelle des Fotos; holen Sie es mit &apos;git lfs pull&apos;</translation>
     </message>
     <message>
         <source>is a trained model; records belong to its objects, of which &apos;organise&apos; makes a folder</source>
@@ -10181,8 +10213,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ihre Zonen liegen nur hier, wenn Breite und Länge vertauscht werden; beim Herausgeber fragen, was was ist</translation>
     </message>
     <message>
+        <source>k4: expected 0, as only k1, k2, k3, p1 and p2 are understood</source>
+        <translation>k4: erwartet wird 0, da nur k1, k2, k3, p1 und p2 verstanden werden</translation>
+    </message>
+    <message>
         <source>keep records of its panes, and export it for other programs</source>
         <translation>Einträge zu seinen Scheiben führen, und es für andere Programme exportieren</translation>
+    </message>
+    <message>
+        <source>keep the aircraft in sight: it goes on by itself, and is shown again once it is heard</source>
+        <translation>das Fluggerät im Blick behalten: Es fliegt von selbst weiter und wird wieder gezeigt, sobald es zu hören ist</translation>
     </message>
     <message>
         <source>kept out of</source>
@@ -10505,6 +10545,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>nennt {0} Parameter; erwartet werden höchstens {1}</translation>
     </message>
     <message>
+        <source>names {0} pictures twice</source>
+        <translation>nennt {0} Bilder zweimal</translation>
+    </message>
+    <message>
         <source>needs the folder of its annotated photos; name it with --data</source>
         <translation>braucht den Ordner seiner annotierten Fotos; mit --data nennen</translation>
     </message>
@@ -10611,6 +10655,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>no more batteries than {0} are taken without being asked for</source>
         <translation>mehr als {0} Akkus werden nicht ungefragt genommen</translation>
+    </message>
+    <message>
+        <source>no more viewpoints are compared for so many; ask for a number of views to fly more</source>
+        <translation>für so viele werden nicht mehr Aufnahmepunkte verglichen; für mehr eine Zahl von Aufnahmen verlangen</translation>
     </message>
     <message>
         <source>no other times of this day spoil fewer photos</source>
@@ -10745,6 +10793,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>keines der {0} Bilder des COLMAP-Modells ist ein Foto in {1}; sind die Namen im Modell die Pfade unter dem Ordner der Fotos?</translation>
     </message>
     <message>
+        <source>none of the {0} images of the model is in this folder, the first &apos;{1}&apos;; name the folder that holds the photos, with the names that they have in the model</source>
+        <translation>keines der {0} Bilder des Modells liegt in diesem Ordner, das erste ist &apos;{1}&apos;; geben Sie den Ordner mit den Fotos an, unter den Namen, die sie im Modell haben</translation>
+    </message>
+    <message>
         <source>none of the {0} objects has its GlobalId in this file</source>
         <translation>keines der {0} Objekte hat seine GlobalId in dieser Datei</translation>
     </message>
@@ -10835,6 +10887,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>nothing says where north is: it is taken to be ahead of the first photo</source>
         <translation>nichts sagt, wo Norden ist: es wird in Blickrichtung des ersten Fotos angenommen</translation>
+    </message>
+    <message>
+        <source>nothing says where on earth the photos were taken, or how large what they show is: the frame is that of their model, and one unit of it counts as {0} m</source>
+        <translation>nichts sagt, wo auf der Erde die Fotos aufgenommen wurden, oder wie groß ist, was sie zeigen: das Bezugssystem ist das ihres Modells, und eine Einheit davon zählt als {0} m</translation>
     </message>
     <message>
         <source>nothing says where on earth this is: give --origin before anything is flown</source>
@@ -11185,6 +11241,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Pose jedes Fotos</translation>
     </message>
     <message>
+        <source>poses are refined in the frame of a site; name it, or leave --refine out</source>
+        <translation>Posen werden im Bezugssystem eines Standorts verfeinert; geben Sie ihn an, oder lassen Sie --refine weg</translation>
+    </message>
+    <message>
         <source>position</source>
         <translation>Position</translation>
     </message>
@@ -11391,6 +11451,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>saving photos</source>
         <translation>Fotos werden gesichert</translation>
+    </message>
+    <message>
+        <source>says no focal length: expected fl_x, or camera_angle_x</source>
+        <translation>nennt keine Brennweite: erwartet wird fl_x oder camera_angle_x</translation>
     </message>
     <message>
         <source>says that it has more numbers than it holds; get the file again</source>
@@ -11757,6 +11821,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die KML-Datei {0}; erwartet werden nur Flächen</translation>
     </message>
     <message>
+        <source>the PNG file holds no picture; copy it from the card again</source>
+        <translation>die PNG-Datei enthält kein Bild; kopieren Sie sie noch einmal von der Karte</translation>
+    </message>
+    <message>
         <source>the TLS link to {0} broke: {1}</source>
         <translation>die TLS-Verbindung zu {0} brach ab: {1}</translation>
     </message>
@@ -11839,6 +11907,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the camera model {0} is not supported; expected one of {1}; undistort the images with COLMAP (image_undistorter), which then writes PINHOLE cameras</source>
         <translation>das Kameramodell {0} wird nicht unterstützt; erwartet wird eines von {1}; die Bilder mit COLMAP entzerren (image_undistorter), das dann PINHOLE-Kameras schreibt</translation>
+    </message>
+    <message>
+        <source>the camera model {0} is not supported; expected one of {1}; undistort the pictures first, such as with COLMAP&apos;s image_undistorter, whose model &apos;prepare --colmap&apos; reads</source>
+        <translation>das Kameramodell {0} wird nicht unterstützt; erwartet wird eines von {1}; entzerren Sie zuerst die Bilder, etwa mit COLMAPs image_undistorter, dessen Modell &apos;prepare --colmap&apos; liest</translation>
     </message>
     <message>
         <source>the camera says that photo {0} failed</source>
@@ -12169,6 +12241,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Mission führt über oder unter dieser Zone hindurch, und Zäune haben keine Höhe: Sie ist nicht im Zaun</translation>
     </message>
     <message>
+        <source>the model has no points: splats start from {0} random places before the cameras, which takes longer and may end in fog; a COLMAP model&apos;s points, or a ply_file_path, are a better start</source>
+        <translation>das Modell hat keine Punkte: Splats beginnen an {0} zufälligen Orten vor den Kameras, was länger dauert und im Nebel enden kann; die Punkte eines COLMAP-Modells oder ein ply_file_path sind ein besserer Anfang</translation>
+    </message>
+    <message>
         <source>the model is open</source>
         <translation>das Modell ist offen</translation>
     </message>
@@ -12183,6 +12259,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the model that a flight brings, on unseen views of &apos;{0}&apos;</source>
         <translation>das Modell, das ein Flug bringt, in ungesehenen Ansichten von &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>the model was moved by {0:m}, which brings it near zero</source>
+        <translation>das Modell wurde um {0:m} verschoben, womit es nahe bei null liegt</translation>
+    </message>
+    <message>
+        <source>the model was turned by {0} degrees, so that its cameras stand upright</source>
+        <translation>das Modell wurde um {0} Grad gedreht, damit seine Kameras aufrecht stehen</translation>
     </message>
     <message>
         <source>the module has been silent for {0} s; it may not let the aircraft arm</source>
@@ -12697,6 +12781,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein Modell davon trainieren</translation>
     </message>
     <message>
+        <source>transform_matrix: expected 4 x 4 numbers</source>
+        <translation>transform_matrix: erwartet werden 4 x 4 Zahlen</translation>
+    </message>
+    <message>
+        <source>transform_matrix: expected a rotation and a place, without scale</source>
+        <translation>transform_matrix: erwartet werden eine Drehung und ein Ort, ohne Maßstab</translation>
+    </message>
+    <message>
+        <source>transform_matrix: expected finite numbers</source>
+        <translation>transform_matrix: erwartet werden endliche Zahlen</translation>
+    </message>
+    <message>
         <source>two facades at a right angle, whose glass sees glass</source>
         <translation>zwei Fassaden im rechten Winkel, deren Glas Glas sieht</translation>
     </message>
@@ -12925,8 +13021,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} von {1} haben ihren Platz gefunden, {2} Punkte, {3} von {4} Paaren verglichen, Bildpunkte liegen um {5} px daneben</translation>
     </message>
     <message>
+        <source>{0} of {1} frames have masks, which are not used: all of a photo is learned</source>
+        <translation>{0} von {1} frames haben Masken, die nicht verwendet werden: gelernt wird das ganze Foto</translation>
+    </message>
+    <message>
+        <source>{0} of {1} images of the COLMAP model are not in {2}, the first {3}; they are left out</source>
+        <translation>{0} von {1} Bildern des COLMAP-Modells liegen nicht in {2}, das erste ist {3}; sie werden weggelassen</translation>
+    </message>
+    <message>
         <source>{0} of {1} panes have measured tilts, up to {2} degrees: they shift their glare by up to {3} min</source>
         <translation>{0} von {1} Scheiben haben gemessene Neigungen, bis zu {2} Grad: sie verschieben ihre Blendung um bis zu {3} min</translation>
+    </message>
+    <message>
+        <source>{0} of {1} photos are not in the model, the first {2}; they are left out</source>
+        <translation>{0} von {1} Fotos sind nicht im Modell, das erste ist {2}; sie werden weggelassen</translation>
     </message>
     <message>
         <source>{0} of {1} photos do not say their focal length: it is found with the model</source>
@@ -12975,6 +13083,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} unseen views</source>
         <translation>{0} neue Ansichten</translation>
+    </message>
+    <message>
+        <source>{0} views were left out, since their sorties took more batteries than there are</source>
+        <translation>ausgelassene Aufnahmen: {0}, da ihre Flüge mehr Akkus brauchten, als es gibt</translation>
     </message>
     <message>
         <source>{0} walls, {1} roofs; {2} m2 of walls, of them {3} m2 holes that were closed and {4} m2 guessed</source>
@@ -15179,6 +15291,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>even light {0}; all of it in the sun {1}; part of it {2}</source>
         <translation>gleichmäßiges Licht {0}; ganz in der Sonne {1}; zum Teil {2}</translation>
+    </message>
+    <message>
+        <source>has no dataset.json, but a COLMAP model in {0}; &apos;prepare PHOTOS --colmap MODEL&apos; makes one of it, with a site and its panels or without</source>
+        <translation>hat keine dataset.json, aber ein COLMAP-Modell in {0}; &apos;prepare PHOTOS --colmap MODEL&apos; macht eine daraus, mit einem Standort und seinen Scheiben oder ohne</translation>
+    </message>
+    <message>
+        <source>has no frames</source>
+        <translation>hat keine frames</translation>
+    </message>
+    <message>
+        <source>has no panels, and {0} learns what panels mirror; train plain splats instead (--method 2dgs), or find its panels first</source>
+        <translation>hat keine Scheiben, und {0} lernt, was Scheiben spiegeln; trainieren Sie stattdessen einfache Splats (--method 2dgs), oder finden Sie zuerst die Scheiben</translation>
     </message>
     <message>
         <source>has {0} bands, as pictures have; expected one band of {1}</source>
@@ -21419,6 +21543,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>sie braucht keinen Import: als Standort öffnen (Reiter Standort, Öffnen)</translation>
     </message>
     <message>
+        <source>holds no COLMAP model (such as sparse/0) and no transforms.json; open a site first if the photos say where they were taken, or make a model of them: “From photos alone” on the Photos tab</source>
+        <translation>enthält kein COLMAP-Modell (etwa sparse/0) und keine transforms.json; öffnen Sie zuerst einen Standort, wenn die Fotos sagen, wo sie aufgenommen wurden, oder machen Sie ein Modell daraus: „Nur aus Fotos“ im Reiter „Fotos“</translation>
+    </message>
+    <message>
+        <source>the camera model {0} is not supported; expected one of {1}; undistort the pictures first, such as with COLMAP&apos;s image_undistorter</source>
+        <translation>das Kameramodell {0} wird nicht unterstützt; erwartet wird eines von {1}; entzerren Sie die Bilder zuerst, etwa mit COLMAPs image_undistorter</translation>
+    </message>
+    <message>
         <source>only the command line works with it</source>
         <translation>nur die Befehlszeile arbeitet damit</translation>
     </message>
@@ -21453,6 +21585,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>has no dataset.json; choose the folder of a data set that is finished</source>
         <translation>hat keine dataset.json; den Ordner eines fertigen Datensatzes wählen</translation>
+    </message>
+    <message>
+        <source>has no panels, and {0} learns what panels mirror; train plain splats instead (“Method”: 2DGS), or find its panels first</source>
+        <translation>hat keine Scheiben, und {0} lernt, was Scheiben spiegeln; trainieren Sie stattdessen einfache Splats („Verfahren“: 2DGS), oder finden Sie zuerst die Scheiben</translation>
     </message>
     <message>
         <source>choose one that a training has finished</source>
