@@ -13,8 +13,9 @@ from planning.base.errors import InputError
 from planning.base.files import read_input_file
 from planning.base.json_file import write_atomically
 from planning.base.messages import glue, say
+from planning.photos.jpeg import JPEG_START
 from planning.photos.metadata import read_photo
-from reconstruction.photos.decode import JPEG_START, PICTURE_FILE, colour_picture, decoded
+from reconstruction.photos.decode import PICTURE_FILE, colour_picture, decoded
 
 PICTURE_SUFFIXES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp")
 
