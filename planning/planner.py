@@ -307,10 +307,7 @@ def plan_flight(
         prepared = _prepared(site_model, request, chosen_profile, proving, monitor)
     watch.lap("reachability")
     trace.record_bound(prepared.problem.reachability.upper_bound)
-    has_routes = request.n_batteries is not None or request.least_gain_db is not None
-    routing_share = REROUTING_SHARE if has_routes else ROUTING_SHARE
-    shortest_s = DRAWING_S if has_routes else SHORTEST_ROUTING_S
-    routing_s = float(np.clip(routing_share * request.time_budget_s, shortest_s, LONGEST_ROUTING_S))
+    routing_share, routing_s = _time_of_routing(request)
     finishing_s = FINISHING_SHARE * request.time_budget_s
     choosing = TimeLimit(max(0.1, limit.remaining_s() - routing_s - finishing_s), also=stop)
     problem = prepared.problem
@@ -367,6 +364,13 @@ def plan_flight(
         found.is_cut_short,
         found.are_all_taken,
     )
+
+
+def _time_of_routing(request: PlanRequest) -> tuple[float, float]:
+    """Share of the time budget, and seconds of it, in which ways are shortened."""
+    has_routes = request.n_batteries is not None or request.least_gain_db is not None
+    share, shortest_s = (REROUTING_SHARE, DRAWING_S) if has_routes else (ROUTING_SHARE, SHORTEST_ROUTING_S)
+    return share, float(np.clip(share * request.time_budget_s, shortest_s, LONGEST_ROUTING_S))
 
 
 def _are_chosen_for_error(request: PlanRequest) -> bool:
