@@ -36,6 +36,7 @@ def settle(application) -> None:
         application.processEvents()
 
 
+@pytest.mark.few(5)
 @pytest.mark.parametrize("points", [9.0, 14.4, 18.0])
 @pytest.mark.parametrize("size", [(1000, 300), (900, 150), (640, 110), (420, 80), (200, 60)])
 def test_names_of_lines_lie_beside_each_other_and_within_the_chart(application, chart, size, points):

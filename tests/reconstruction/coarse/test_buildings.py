@@ -56,6 +56,7 @@ def test_each_wing_has_its_own_height(plain):
     assert not np.isfinite(height_at(plain, 13.0, 5.0))
 
 
+@pytest.mark.slow
 def test_houses_side_by_side_each_have_walls_and_a_roof():
     """One side of the row was flown along more often: from there the walls on the lane are behind the first house."""
     houses = (((-16.0, -6.0), (-4.0, 6.0), 15.0), ((4.0, -5.0), (14.0, 5.0), 12.0))

@@ -306,6 +306,7 @@ def print_kept_kernels() -> None:
         sys.stdout.write(f"{sum(path.is_file() for path in kept.rglob('*'))}\n")
 
 
+@pytest.mark.slow
 def test_no_kernel_is_compiled_anew_from_step_to_step(tmp_path: Path) -> None:
     if not open_device().adapter.is_software:
         pytest.skip("only Mesa's adapters that are programs show what they compile")
