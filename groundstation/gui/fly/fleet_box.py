@@ -128,7 +128,7 @@ class FleetBox(QWidget):
         self._layout.addSpacing(APART_PX - self._layout.spacing())
         self._layout.addWidget(self.return_all)
         for number in range(1, N_KEYS + 1):
-            keys = QShortcut(QKeySequence(_keys(number)), self)
+            keys = QShortcut(QKeySequence(aircraft_keys(number)), self)
             keys.activated.connect(lambda number=number: self.selected.emit(number))
         self.hide()
 
@@ -168,7 +168,7 @@ class FleetBox(QWidget):
         button.setCheckable(True)
         button.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         if number <= N_KEYS:
-            keys = shown_keys(QKeySequence(_keys(number)))
+            keys = shown_keys(QKeySequence(aircraft_keys(number)))
             button.setToolTip(self.tr("Show this aircraft; the buttons below are for it ({0})").format(keys))
         button.clicked.connect(lambda _checked=False: self.selected.emit(number))
         self._group.addButton(button)
@@ -195,5 +195,6 @@ class FleetBox(QWidget):
         button.show()
 
 
-def _keys(number: int) -> str:
+def aircraft_keys(number: int) -> str:
+    """Keys that select an aircraft."""
     return f"Ctrl+Shift+{number}"

@@ -18,7 +18,7 @@ from groundstation.services.plan.plan_cache import ActivePlan, PlanCache, Prepar
 from groundstation.services.plan.planning import plan_document_site, with_local_site
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.project.input_files import read_input_plan
-from planning.base.errors import GroundStationError
+from planning.base.errors import GroundStationError, InputError
 from planning.base.findings import Severity
 from planning.base.messages import say
 from planning.parameters import CameraSettings
@@ -27,7 +27,7 @@ from planning.planner import Planned
 from planning.request import PlanRequest
 from planning.revision import edits
 from planning.revision.edits import Revision
-from planning.site.records import SiteModel
+from planning.site.records import SiteModel, require_panels
 
 # The methods of choosing views as the pilot knows them.
 
@@ -400,8 +400,14 @@ class PlanController(QObject):
             self._context.cancel(self._activation, quietly=True)
             self._activation = None
         self._not_taken = ""
-        if entry is None or site is None or site.site.n_panels == 0:  # nothing that an imported mission could show
+        if entry is None or site is None:
             self._set_active(None)
+            return
+        try:
+            require_panels(site.site)
+        except InputError as error:  # said where the plan is judged: a mission that was imported flies without them
+            self._active = None
+            self._give_up(self._context.localized(str(error)))
             return
         plan = entry.plan
         found = self._plan_cache.find(plan, site)

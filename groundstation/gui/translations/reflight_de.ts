@@ -21924,6 +21924,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>0,7 s halten; die Taste des Reiters Fliegen wirkt sofort</translation>
     </message>
     <message>
+        <source>Select the aircraft of this number</source>
+        <translation>Das Fluggerät dieser Nummer auswählen</translation>
+    </message>
+    <message>
         <source>Delete the line, or the panel</source>
         <translation>Linie oder Scheibe löschen</translation>
     </message>

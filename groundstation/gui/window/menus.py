@@ -65,6 +65,11 @@ def sections(window: MainWindow) -> list[tuple[str, list[Row]]]:
     found[0][1].append(("Tab", translate("Shortcuts", "To the next part of the window; with Shift to the one before")))
     for spec in TABS:
         rows = _rows(window.tab(spec.name).actions())
+        if spec.name == "fly":
+            from groundstation.gui.fly.fleet_box import N_KEYS, aircraft_keys  # imported with its tab
+
+            aircraft = [shown_keys(QKeySequence(aircraft_keys(number))) for number in range(1, N_KEYS + 1)]
+            rows.append((", ".join(aircraft), translate("Shortcuts", "Select the aircraft of this number")))
         if rows:
             found.append((translate("Shortcuts", "{0} tab").format(spec.shown_title()), rows))
     return found + view_keys()
