@@ -141,7 +141,8 @@ def disagreement_with_network(
 def other_panes(panels_px: Sequence[Array], panes: Sequence[Pane]) -> float:
     """Share of panes that the network is sure of and that are none of the panels; 0 where these panes are too few.
 
-    Lines that divide a wall with windows into wrong cells lie on glass often enough; their cells are no panes.
+    Lines that divide a wall with windows into wrong cells lie on glass often enough; their cells are no panes. Next to
+    panels that have not four corners the network says nothing: it knows no others.
 
     Parameters
     ----------
@@ -155,7 +156,7 @@ def other_panes(panels_px: Sequence[Array], panes: Sequence[Pane]) -> float:
     n_others = 0
     for quad in sure:
         near = np.flatnonzero((low < quad.max(axis=0)).all(axis=1) & (high > quad.min(axis=0)).all(axis=1))
-        n_others += not any(_iou(quad, panels_px[k]) > SAME for k in near.tolist())
+        n_others += not any(len(panels_px[k]) != 4 or _iou(quad, panels_px[k]) > SAME for k in near.tolist())
     return n_others / len(sure)
 
 

@@ -298,6 +298,8 @@ def test_cells_that_are_other_panes_than_the_network_s_are_told_from_the_same_on
     assert (
         other_panes(halves, [replace(pane, corners_px=pane.corners_px + np.array([0.0, 8.0])) for pane in panes]) == 1.0
     )
+    triangles = [cell[np.array(kept)] for cell in cells for kept in ((0, 1, 2), (0, 2, 3))]
+    assert other_panes(triangles, panes) == 0.0, "the network knows four corners only"
     assert other_panes([], panes) == 1.0
     assert other_panes(cells[n:], panes) == pytest.approx(1.0 / n)
     assert other_panes([], [replace(pane, confidence=SURE - 0.01) for pane in panes]) == 0.0
