@@ -15,9 +15,6 @@ Array = NDArray[np.float64]
 BORDER_SHARE = 0.3
 """Chance that a coordinate of a border position lies at the end of the airspace: rare sections are seen from there."""
 
-SOBOL_BITS = 30
-"""Of the coordinates of Sobol points."""
-
 
 def spread_positions(space: FreeSpace, frames: PanelFrames, n: int, rng: np.random.Generator) -> Array:
     """Allowed positions, shape (at most n, 3), in random order: few where the airspace is mostly forbidden.
@@ -68,37 +65,12 @@ def rounded(views: ViewpointArrays, camera: Camera) -> ViewpointArrays:
 
 
 def sobol(n: int, rng: np.random.Generator) -> Array:
-    """Scrambled Sobol points in the unit cube, shape (n, 3), n <= 2^30.
+    """Scrambled Sobol points in the unit cube, shape (n, 3)."""
+    from scipy.stats import qmc
 
-    Direction numbers of S. Joe and F. Kuo (2008), in the order of the Gray code, after a random linear scramble and
-    shift (J. Matousek, 1998). The points are those of `scipy.stats.qmc.Sobol`, which takes half a second to import.
-    """
     if n == 0:
         return np.zeros((0, 3))
-    places, (rng,) = np.arange(SOBOL_BITS), rng.spawn(1)
-    shift = rng.integers(2, size=(3, SOBOL_BITS), dtype=np.uint32) @ (1 << places)
-    scramble = np.tril(rng.integers(2, size=(3, SOBOL_BITS, SOBOL_BITS), dtype=np.uint32)).astype(np.int64)
-    scramble[:, places, places] = 1
-    # Bits of each direction number, the highest first; a product with them modulo 2 mixes higher bits into lower ones.
-    bits = np.array(_direction_numbers())[:, None, :] >> places[::-1, None] & 1
-    mixed = ((scramble @ bits) % 2 << places[::-1, None]).sum(axis=1)
-    number = np.arange(n)
-    gray = number ^ number >> 1
-    found = np.repeat(shift[:, None], n, axis=1)
-    for place in range(int(n - 1).bit_length()):
-        found ^= np.where(gray >> place & 1, mixed[:, place, None], 0)
-    return np.asarray(found.T / 2.0**SOBOL_BITS)
-
-
-def _direction_numbers() -> list[list[int]]:
-    """Of the first three dimensions, whose primitive polynomials are 1, x + 1 and x^2 + x + 1."""
-    first = [1 << SOBOL_BITS - 1 - k for k in range(SOBOL_BITS)]
-    second, third = first[:1], [first[0], 3 * first[1]]
-    for k in range(1, SOBOL_BITS):
-        second.append(second[-1] ^ second[-1] >> 1)
-        if k > 1:
-            third.append(third[-1] ^ third[-2] ^ third[-2] >> 2)
-    return [first, second, third]
+    return qmc.Sobol(3, rng=rng).random_base2(int(np.ceil(np.log2(n))))[:n]
 
 
 def picture_corners(views: ViewpointArrays, camera: Camera, depth_m: float) -> Array:

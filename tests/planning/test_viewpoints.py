@@ -7,13 +7,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.stats import qmc
 
 from planning.aircraft.catalogue import profile
 from planning.base.errors import InfeasibleError, OperationCancelled
 from planning.base.progress import QUIET, TimeLimit, Trace, never
 from planning.coverage.model import CoverageModel, Elements, element_weights, exact_coverage
-from planning.coverage.positions import sobol
 from planning.coverage.reachability import find_reachable
 from planning.coverage.sections import SectionGrid, panel_frames
 from planning.parameters import GreedyParameters
@@ -48,17 +46,6 @@ def problem_of(scene, **options):
 def run(method, problem, goal, seed=0, stop=never, monitor=QUIET, **options):
     trace = Trace()
     return method(problem, goal, seed=seed, stop=stop, trace=trace, monitor=monitor, **options), trace
-
-
-@given(seed=st.integers(0, 2**32), n=st.one_of(st.integers(0, 40), st.integers(1000, 5000)))
-def test_scrambled_sobol_points_are_those_of_scipy(seed, n):
-    rng, other = np.random.default_rng(seed), np.random.default_rng(seed)
-    points = sobol(n, rng)
-    assert points.shape == (n, 3)
-    if n:
-        published = qmc.Sobol(3, rng=other).random_base2(int(np.ceil(np.log2(n))))[:n]
-        assert np.array_equal(points, published)
-    assert rng.random() == other.random()
 
 
 def random_cover(rng, n_candidates, n_elements):
