@@ -23,9 +23,10 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from groundstation.services.model.rendering import stored_lpips_weights
-from groundstation.services.photos.coarse import SITE_FILE, SPARSE, coarse_files
+from groundstation.services.photos.coarse import REPORT_FILE, SITE_FILE, SPARSE, coarse_files
 from groundstation.services.project.input_files import read_input_site
 from groundstation.services.scenes.photos import render_photos
+from planning.base.json_file import read_json
 from reconstruction.base.cameras import Pose, PosedPhoto
 from reconstruction.coarse.parameters import CoarseRequest
 from reconstruction.colmap.folder import read_model, write_model
@@ -88,6 +89,9 @@ LONG_PX, LONG_S = 384, 90.0
 
 QUICK_LONG_PX, QUICK_S = 128, 4.0
 
+COARSE = "coarse"
+"""Folder of the model of photos alone, below that of a set."""
+
 COARSE_PX = 1000
 """Longer side of photos that poses are found from, where none lie beside them."""
 
@@ -149,7 +153,7 @@ def of_wall(source: Path, folder: Path, long_px: int) -> Path:
 
 def of_photos_alone(source: Path, folder: Path, long_px: int) -> Path:
     """The data set of a folder of photos, as `coarse` and `train` make it of them."""
-    pictures, coarse = folder / "jpegs", folder / "coarse"
+    pictures, coarse = folder / "jpegs", folder / COARSE
     pictures.mkdir(parents=True)
     for path in sorted(source.iterdir()):
         if path.suffix.lower() in (".jpg", ".jpeg"):
@@ -165,6 +169,7 @@ SETS = (
     RealSet("wall", "glass wall", "glass/wall", of_wall, True),
     RealSet("sceaux", "Sceaux castle", "multiview/sceaux", of_photos_alone, False),
     RealSet("lund", "Lund door", "multiview/lund_door", of_photos_alone, False),
+    RealSet("flight", "drone flight", "multiview/mirafiori", of_photos_alone, False),
 )
 
 
@@ -191,6 +196,8 @@ def _measure_set(each: RealSet, source: Path, context: Context) -> Iterator[Row]
     pictures: dict[str, NDArray[np.uint8]] = {}
     with tempfile.TemporaryDirectory() as place:
         folder = each.make(source, Path(place), long_px)
+        if (report := Path(place) / COARSE / REPORT_FILE).exists():
+            yield from _about_coarse(each.title, read_json(report))
         photos = read_photo_set(folder)
         has_panels = len(photos.panels.corners_enu_m) > 0
         for method, title in METHODS.items():
@@ -214,6 +221,15 @@ def _measure_set(each: RealSet, source: Path, context: Context) -> Iterator[Row]
             yield Row(each.title, title, round(found[method], 2), "dB", None, text)
         _show(each, [pictures[name] for name in ("truth", "2dgs", DEFAULT_METHOD)], context)
     yield _difference(each.title, found, context.is_quick)
+
+
+def _about_coarse(scene: str, report: Mapping[str, Any]) -> Iterator[Row]:
+    """What came of photos alone; against receivers where they have any."""
+    text = f"of {report['photos']}; image points off by {report['reprojection_px']:.2f} px, {report['points']} points"
+    yield Row(scene, "photos that found their place", report["registered"], "", None, text)
+    off = report["position_residual_m"]
+    if off:
+        yield Row(scene, "median distance to receivers", off["median"], "m", None, f"largest {off['largest']:.2f} m")
 
 
 def _show(each: RealSet, pictures: Sequence[NDArray[np.uint8]], context: Context) -> None:
@@ -455,8 +471,10 @@ BENCHMARK = Benchmark(
     "there are no panels whole pictures. LPIPS is AlexNet's. Photos of the wall, and the picture made of one: "
     "B. Johns, E. Abdi, M. Arashpour, Glass Curtain Wall Installation Dataset, 2023, doi 10.26180/23538198, CC BY 4.0; "
     "poses were fitted to its grid. Sceaux castle (github.com/openMVG/ImageDataset_SceauxCastle) and the door in Lund "
-    f"(C. Olsson) go the way of a folder of JPEGs: `coarse`, `train`. {DATA_VARIABLE} names folders with more data "
-    f"(`multiview/sceaux`). Pictures of these two stay in {OTHERS}. Shown are photo, 2DGS, ours.",
+    "(C. Olsson) go the way of a folder of JPEGs: `coarse`, `train`. So does a drone flight, 32 photos of a Phantom 4 "
+    "Multispectral with RTK, straight down from 44 m onto a ruin in Turin (DJI_*.JPG of github.com/vinstray/i-sfm, MIT "
+    f"licence). {DATA_VARIABLE} names folders with more data (`multiview/sceaux`, `multiview/mirafiori`). Pictures of "
+    f"these three stay in {OTHERS}. Shown are photo, 2DGS, ours.",
     measure_sets,
 )
 

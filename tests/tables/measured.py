@@ -66,36 +66,36 @@ def gap_section(folder: Path) -> Iterator[str]:
     yield ""
 
 
-SCORES = ("PSNR", "SSIM", "LPIPS")
+LIKENESS = ("SSIM", "LPIPS", "FLIP")
 
 
 def real_section(folder: Path) -> Iterator[str]:
     """Lines of the page on methods with real photos; `folder` as above."""
     rows = {key: row for key, row in _rows(folder / BENCHMARKS / "real-photos.csv").items() if "against" not in key[1]}
-    sets = [scene for scene in dict.fromkeys(scene for scene, _ in rows) if (scene, "skipped") not in rows]
+    methods = list(dict.fromkeys(what for (_, what), row in rows.items() if row["unit"] == "dB"))
     yield "## Methods on real photos\n"
     yield (
         "Not in the paper, whose own photos are not published. Photos that were held out of a real glass wall, on its "
-        "facade, and of two buildings from photos alone, without panels: whole pictures. RefGlass-GS needs panels. As "
-        "much processor time for each. "
+        "facade, and, from photos alone and without panels, of a castle, a door and a ruin under a drone: whole "
+        "pictures. RefGlass-GS needs panels. As much processor time for each. "
         "[benchmarks.md](benchmarks.md#models-of-real-photos), `python -m tests.benchmarks --only real-photos`\n"
     )
-    if not sets:
+    if not methods:
         yield "Not run.\n"
         return
-    yield f"| | {' | '.join(f'{scene}: {SCORES[0]} | {SCORES[1]} | {SCORES[2]}' for scene in sets)} |"
-    yield "| --- |" + " ---: |" * len(SCORES) * len(sets)
-    for method in dict.fromkeys(what for _, what in rows if what != "skipped"):
-        cells = [cell for scene in sets for cell in _scores(rows.get((scene, method), {}))]
-        yield f"| {method} | {' | '.join(cells)} |"
+    yield f"| | | PSNR | {' | '.join(LIKENESS)} |"
+    yield "| --- | --- |" + " ---: |" * (1 + len(LIKENESS))
+    for (scene, method), row in rows.items():
+        if method in methods:
+            yield f"| {scene} | {method} | {' | '.join(_scores(row))} |"
     yield ""
 
 
 def _scores(row: Mapping[str, str]) -> list[str]:
-    """PSNR, SSIM and LPIPS of a method on a set, as far as they were measured."""
-    if row.get("unit") != "dB":
-        return [row.get("value", "not run"), "", ""]
-    found = [re.search(rf"{name} ([\d.]+)", row["against"]) for name in SCORES[1:]]
+    """PSNR and likeness of a method on a set, as far as they were measured."""
+    if row["unit"] != "dB":
+        return [row["value"], *[""] * len(LIKENESS)]
+    found = [re.search(rf"{name} ([\d.]+)", row["against"]) for name in LIKENESS]
     return [f"{float(row['value']):.2f}", *("" if each is None else each[1] for each in found)]
 
 
