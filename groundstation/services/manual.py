@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from planning.base.files import ANY_FILE, read_input_file
+from planning.base.searching import folded
 
 PACKAGED = Path(__file__).parents[1] / "manual"
 CHECKOUT = Path(__file__).parents[2] / "docs"
@@ -130,14 +131,14 @@ def anchor(heading: str) -> str:
 
 def found_in(folder: Path, words: str) -> Iterator[tuple[str, str]]:
     """Pages that hold all words, each with its title: those with most of them first."""
-    wanted = [word.casefold() for word in words.split()]
+    wanted = folded(words).split()
     counted = []
     for chapter in chapters(folder):
         for name, title in chapter.pages:
-            text = _text(folder / name).casefold()
+            text = folded(_text(folder / name))
             counts = [text.count(word) for word in wanted]
             if wanted and all(counts):
-                in_title = sum(word in title.casefold() for word in wanted)
+                in_title = sum(word in folded(title) for word in wanted)
                 counted.append((-in_title, -min(counts), name, title))
     yield from ((name, title) for *_, name, title in sorted(counted))
 

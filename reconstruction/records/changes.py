@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import re
+import unicodedata
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -38,9 +40,13 @@ MAX_QUERY = 500
 
 MAX_QUERY_WORDS = 16
 
+MAX_SPELLED = 3
+"""Double s of a word that may stand for ß in the texts, from the first on."""
+
 # Scripts without blanks between words: every character is a word, and what is searched a phrase of them.
 _WITHOUT_BLANKS = re.compile("([\u0e00-\u0eff\u3040-\u30ff\u3400-\u4dbf\u4e00-\u9fff\uac00-\ud7af\uf900-\ufaff])")
 _WORD = re.compile(r"[^\W_]+")
+_DOUBLE_S = re.compile("ss|ß", re.IGNORECASE)
 
 
 def indexed_text(text: str) -> str:
@@ -55,9 +61,18 @@ def query_of(text: str) -> str | None:
     Only letters and digits of the user's get into it, each run of them in quotes.
     """
     found = []
-    for word in _WORD.findall(text[:MAX_QUERY].replace("_", " "))[:MAX_QUERY_WORDS]:
-        found.append(f'"{" ".join(indexed_text(word).split())}"*')
-    return " ".join(found) or None
+    text = unicodedata.normalize("NFC", text[:MAX_QUERY].replace("_", " "))
+    for word in _WORD.findall(text)[:MAX_QUERY_WORDS]:
+        spelled = [f'"{" ".join(indexed_text(each).split())}"*' for each in _spellings(word)]
+        found.append(f"({' OR '.join(spelled)})" if len(spelled) > 1 else spelled[0])
+    return " AND ".join(found) or None
+
+
+def _spellings(word: str) -> list[str]:
+    """A word as texts may have it: the index knows letters without case and accents, but not that ß is a double s."""
+    first, *others = _DOUBLE_S.split(word)
+    choices = [("ss", "ß")] * len(others[:MAX_SPELLED]) + [("ss",)] * len(others[MAX_SPELLED:])
+    return [first + "".join(map("".join, zip(each, others, strict=True))) for each in itertools.product(*choices)]
 
 
 class Changes:

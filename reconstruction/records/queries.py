@@ -8,6 +8,7 @@ from typing import Any
 
 from planning.base.errors import InputError
 from planning.base.messages import say
+from planning.base.searching import folded
 from reconstruction.records.book import RecordBook
 from reconstruction.records.changes import FIELD_BITS, KIND_BITS, OBJECT_CODE, decoded, query_of
 from reconstruction.records.database import OBJECT_COLUMNS, OBJECTS, entry_of, joined, object_of, selected
@@ -232,7 +233,10 @@ def find_objects(book: RecordBook, object_filter: ObjectFilter) -> tuple[ObjectR
         wheres.append(sql)
         values += value
     sql = f"SELECT {OBJECT_COLUMNS} FROM {OBJECTS} WHERE {' AND '.join(wheres)} ORDER BY o.id"
-    return tuple(object_of(row, book.database) for row in book.database.rows(sql, values))
+    objects = (object_of(row, book.database) for row in book.database.rows(sql, values))
+    # SQLite knows the case of ASCII letters only.
+    part = folded(object_filter.name_part)
+    return tuple(each for each in objects if part in folded(each.name))
 
 
 def _conditions(object_filter: ObjectFilter) -> list[tuple[str, list[Any]]]:
@@ -241,8 +245,6 @@ def _conditions(object_filter: ObjectFilter) -> list[tuple[str, list[Any]]]:
         found.append(("o.layer = ?", [object_filter.layer]))
     if object_filter.parent is not None:
         found.append(("p.global_id = ?", [object_filter.parent]))
-    if object_filter.name_part:
-        found.append(("instr(lower(o.name), lower(?)) > 0", [object_filter.name_part]))
     if object_filter.attribute in COMPUTED:
         found.append(
             (

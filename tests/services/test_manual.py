@@ -79,6 +79,13 @@ def test_a_search_finds_pages_with_all_words_those_with_them_in_the_title_first(
     assert list(found_in(CHECKOUT, "  ")) == []
 
 
+def test_a_search_of_the_manual_minds_neither_case_nor_accents_nor_sharp_s(tmp_path):
+    (tmp_path / CONTENTS).write_text("```{toctree}\n:caption: Teil\nfenster\n```\n", encoding="utf-8")
+    (tmp_path / "fenster.md").write_text("# Größe\nWeißes Glas in Zürich\n", encoding="utf-8")
+    for words in ("WEISS zurich", "weiß Zürich", "grosse"):
+        assert list(found_in(tmp_path, words)) == [("fenster.md", "Größe")]
+
+
 def test_each_term_is_said_once_and_its_page_exists():
     words = [word.casefold() for term in TERMS for word in (term.name, *term.also)]
     assert len(set(words)) == len(words)

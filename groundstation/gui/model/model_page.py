@@ -49,6 +49,7 @@ from groundstation.services.reconstruct.folders import MODELS_FOLDER
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Severity
 from planning.base.parameters import declared
+from planning.base.searching import folded
 
 LEAST_WIDTH_PX = 440
 
@@ -529,10 +530,9 @@ class ModelPage(QObject):
         notes: dict[str, str] = {}
         if words and card is not None:
             notes = {hit.global_id: hit.text for hit in reversed(self.controller.search(words)) if hit.kind != "object"}
-            folded = words.casefold()
             notes = {panel.global_id: notes[panel.facade_id] for panel in panels if panel.facade_id in notes} | notes
             panels = tuple(
-                panel for panel in panels if folded in panel.name.casefold() or panel.global_id in {*notes, words}
+                panel for panel in panels if folded(words) in folded(panel.name) or panel.global_id in {*notes, words}
             )
         self.side.set_panels(panels, notes, self.controller.selected)
         self.side.show_colours(self.controller.colouring)

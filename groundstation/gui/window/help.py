@@ -43,6 +43,7 @@ from groundstation.gui.widgets.theme import colours
 from groundstation.services.glossary import TERMS
 from groundstation.services.manual import FIRST, anchor, chapters, found_in, manual_folder, page_part
 from planning.base.errors import InputError
+from planning.base.searching import folded
 
 SIDE_PX, PAGE_PX, HIGH_PX = 260, 720, 640
 
@@ -167,7 +168,7 @@ class ManualWindow(QWidget):
         words = self._context.localized
         more = self.tr("More")
         parts = [f"# {self.tr('Words')}"]
-        for term in sorted(TERMS, key=lambda term: words(term.name).casefold()):
+        for term in sorted(TERMS, key=lambda term: folded(words(term.name))):
             parts.append(f"**{words(term.name)}** {words(term.says)} [{more}]({term.page})")
         return "\n\n".join(parts)
 

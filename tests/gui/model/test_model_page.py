@@ -142,6 +142,8 @@ def test_records_are_kept_found_and_taken_back(opened):
     opened.controller.select(opened.controller.card.panels[0].global_id)
     global_id = opened.controller.selected
     assert not opened.controller.has_records
+    other = opened.controller.card.panels[1].global_id
+    opened.records.changeRequested.emit(Inspection(other, "2026-05-04", "F. Weiß", "visit"), None)
     opened.records.changeRequested.emit(Defect(global_id, "crack", 4, "2026-05-04", 0.2, 0.7, note="lower left"), None)
     opened.records.changeRequested.emit(Inspection(global_id, "2026-05-04", "M. Weber", "drone photos"), None)
     assert (opened.controller.card.folder / FILE).is_file()
@@ -151,6 +153,9 @@ def test_records_are_kept_found_and_taken_back(opened):
     opened.side.search.setText("weber")
     opened._search.timeout.emit()
     assert names(opened) == ["A-0000"]
+    opened.side.search.setText("weiss")
+    opened._search.timeout.emit()
+    assert names(opened) == [opened.controller.card.panels[1].name]
     opened.side.search.setText("b-00")
     opened._search.timeout.emit()
     assert names(opened) == ["B-0000", "B-0001"]
