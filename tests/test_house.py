@@ -6,7 +6,6 @@ import re
 import shutil
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -46,12 +45,16 @@ print([name for name in {forbidden!r} if name in sys.modules])
 
 @pytest.mark.alone
 @pytest.mark.parametrize("program", [["app.py"], ["-m", "groundstation"]], ids=["app.py", "module"])
-def test_help_answers_in_under_half_a_second_and_names_the_commands(program):
-    fastest = 9.0
-    for _ in range(3):
-        started = time.perf_counter()
-        done = subprocess.run([sys.executable, *program, "-h"], cwd=ROOT, capture_output=True, text=True, check=False)
-        fastest = min(fastest, time.perf_counter() - started)
+def test_help_answers_in_under_half_a_second_and_names_the_commands(program, tmp_path):
+    """Of processor time, which others on the machine do not lengthen by making it wait; compiled, as for a user."""
+    own = {"PYTHONPYCACHEPREFIX": str(tmp_path), "PYTHONDONTWRITEBYTECODE": ""}
+    command, fastest = [sys.executable, *program, "-h"], 9.0
+    for _ in range(4):
+        before = _children_s()
+        done = subprocess.run(
+            command, cwd=ROOT, env={**os.environ, **own}, capture_output=True, text=True, check=False, timeout=300
+        )
+        fastest = min(fastest, _children_s() - before)
     assert done.returncode == 0
     commands = (
         "demo project site plan check compare brief export import simulate report topup signing route tradeoff "
@@ -59,7 +62,13 @@ def test_help_answers_in_under_half_a_second_and_names_the_commands(program):
     )
     for command in commands.split():
         assert f"\n    {command} " in done.stdout
-    assert fastest < 0.5
+    assert 0.0 < fastest < 0.5
+
+
+def _children_s() -> float:
+    """Processor time of all processes that have been waited for."""
+    times = os.times()
+    return times.children_user + times.children_system
 
 
 def test_top_level_holds_the_agreed_folders_and_nothing_else_of_ours():
