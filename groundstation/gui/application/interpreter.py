@@ -1,4 +1,4 @@
-"""What the window does to Python itself: imports on another thread, garbage collected while there is time, turns."""
+"""What the window does to Python itself: imports on another thread, garbage and turns, and the types of Qt."""
 
 from __future__ import annotations
 
@@ -193,7 +193,8 @@ class BackgroundImport(QObject):
             with contextlib.suppress(Exception):
                 importlib.import_module(module)
             self._done.append(module)
-        sys.meta_path.remove(gives_way)
+        # Another list: a thread that is going through this one would miss whoever moved up.
+        sys.meta_path = [each for each in sys.meta_path if each is not gives_way]
 
     def _next(self) -> str | None:
         with self._lock:
@@ -225,6 +226,20 @@ modules were imported on another thread."""
 def take_short_turns() -> None:
     """Let threads take turns often, so that the window's thread gets its own soon."""
     sys.setswitchinterval(SWITCH_S)
+
+
+def make_types_of_qt() -> None:
+    """Have all types of Qt's modules that are imported by now made on this thread, before there are others.
+
+    PySide makes a type when it is first asked for, and is not made for two threads that ask: they leave its table of
+    types that are to be made damaged, and the process ends with a segmentation fault. While the thread that imports
+    asked for all of them, for the 3-D view, the window's thread made those of its events and widgets. There are some
+    450 left once the window is made, which take 90 ms here instead of over there.
+    """
+    for name, module in tuple(sys.modules.items()):
+        if name.startswith("PySide6.Qt"):
+            for each in dir(module):
+                getattr(module, each)
 
 
 def leave_modules_alone() -> None:

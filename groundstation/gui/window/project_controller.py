@@ -21,7 +21,12 @@ from PySide6.QtGui import QCloseEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.application.interpreter import GarbageCollector, leave_modules_alone, take_short_turns
+from groundstation.gui.application.interpreter import (
+    GarbageCollector,
+    leave_modules_alone,
+    make_types_of_qt,
+    take_short_turns,
+)
 from groundstation.gui.application.translate import Translations
 from groundstation.gui.start_page import StartPage
 from groundstation.gui.widgets.icons import tint_all
@@ -96,6 +101,8 @@ class ProjectController(QObject):
         self.context.documentChanged.connect(self._site_came)
         self._start_timer()
         self._hear_no_more = hear_compiling(self._say_compiling)
+        make_types_of_qt()
+        self._garbage.freeze()
 
     # The window
 

@@ -45,6 +45,20 @@ def test_all_modules_are_told_of_in_order_and_python_searches_as_before(applicat
     turn_until(application, lambda: sys.meta_path == before)
 
 
+def test_a_thread_that_is_asking_for_a_module_meanwhile_asks_everybody(application, modules_that_wait):
+    module, running, held = modules_that_wait
+    before, told = list(sys.meta_path), []
+    loading = BackgroundImport()
+    loading.imported.connect(told.append)
+    loading.add(module)
+    assert running.wait(20.0)
+    asked = iter(sys.meta_path)
+    assert isinstance(next(asked), _GiveWay)
+    held.set()
+    turn_until(application, lambda: told == [module] and sys.meta_path == before)
+    assert list(asked) == before
+
+
 def test_what_is_wanted_now_is_imported_before_what_waits(application, modules_that_wait):
     module, running, held = modules_that_wait
     loading, told = BackgroundImport(), []

@@ -1,5 +1,6 @@
 """The window does the main job: open, look, plan, stop, cancel, undo, save; and answers while it works."""
 
+import os
 import re
 import subprocess
 import sys
@@ -479,6 +480,48 @@ def test_modules_that_are_half_imported_are_asked_for_nothing(tmp_path, is_left_
     code = "\n".join((*lines, "interpreter.leave_modules_alone()" * is_left_alone, "import half_imported"))
     made = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert (made.returncode == 0) is is_left_alone, made.stderr
+
+
+def test_no_type_of_qt_is_left_to_be_made_when_there_are_other_threads(application, tmp_path):
+    """Two threads that have types made at once end the process, which most tries of them alone show."""
+    script = """
+import sys, threading
+from PySide6.QtWidgets import QApplication
+from groundstation.gui.window.project_controller import ProjectController
+
+def left():
+    modules = [module for name, module in sys.modules.items() if name.startswith("PySide6.Qt")]
+    return sum(len(set(dir(module)) - set(vars(module))) for module in modules)
+
+def note_and_start(thread):
+    begun.append((thread.name, left()))
+    start(thread)
+
+application, begun, start = QApplication(["reflight"]), [], threading.Thread.start
+print(left())
+threading.Thread.start = note_and_start
+controller = ProjectController(application)
+controller.show()
+while controller.window.shown_tab() != "start":
+    application.processEvents()
+assert ("import", 0) in begun, begun
+assert all(n == 0 for _, n in begun), begun
+threads = [threading.Thread(target=lambda: [getattr(module, name) for module in modules for name in dir(module)])
+    for modules in [[sys.modules["PySide6.QtWidgets"], sys.modules["PySide6.QtGui"]]] * 2]
+for thread in threads:
+    thread.start()
+for thread in threads:
+    thread.join()
+print("alive", flush=True)
+import os; os._exit(0)
+"""
+    own = {"REFLIGHT_CONFIG_DIR": str(tmp_path), "PYTHONFAULTHANDLER": "1"}
+    made = subprocess.run(
+        [sys.executable, "-c", script], env={**os.environ, **own}, capture_output=True, text=True, timeout=PATIENCE_S
+    )
+    assert made.returncode == 0, made.stderr[-3000:]
+    n_left, alive = made.stdout.split()
+    assert (int(n_left) > 100, alive) == (True, "alive"), "types are made when they are asked for, and by one thread"
 
 
 def test_a_tab_that_is_only_begun_is_whole_for_whom_wants_it(application, controller):
