@@ -14,7 +14,7 @@ from planning.base.findings import Severity
 from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.site.bundled import roof
-from tests.gui.driving import choose, clicked, close_controller, turn_until, turn_until_idle
+from tests.gui.driving import choose, clicked, close_controller, press_in, turn_until, turn_until_idle
 from tests.planning.revision.cases import QUICK
 from tests.reconstruction.synthetic_photos import ORIGIN, made_photos, write_flight, write_model
 
@@ -97,7 +97,7 @@ def test_a_coarse_model_is_imported_kept_filled_from_photos_and_planned(opened, 
     opened.idle()
     assert dialog.can_import(), dialog.error()
     assert "No panels yet" in dialog._summary.text()
-    dialog.accept()
+    press_in(dialog, "Import")
     opened.idle()
     assert opened.site.n_panels == 0
     assert len(opened.window.shared_view.scene()._site.drawables[Layer.BUILDING]) == 1

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QCoreApplication, QEvent, QPointF, Qt
 from PySide6.QtGui import QAction, QMouseEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QComboBox
 
-from groundstation.gui.model.record_side import KIND_TITLES, RecordDialog
+from groundstation.gui.model.record_side import KIND_TITLES
 from groundstation.gui.reconstruct.model_view import Mark
 from groundstation.services.jobs.channel import ProcessEnded
 from groundstation.services.model.panel_colours import Computed
@@ -26,7 +28,7 @@ from groundstation.services.units import UnitSystem
 from reconstruction.objects.store import write_scene
 from reconstruction.records.book import FILE
 from reconstruction.records.entries import Attribute, Defect, Document, Inspection, Maintenance
-from tests.gui.driving import choose, clicked, escape, press, shut, turn_until, type_into
+from tests.gui.driving import choose, click_on, clicked, escape, press, shut, turn_until, type_into
 from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
 
@@ -48,6 +50,36 @@ def probe(page, x=0.5, y=0.5):
 
 def names(page):
     return [panel.name for panel in page.side.rows.panels]
+
+
+def adds(page, kind):
+    """The entry of the menu that adds a record of a kind."""
+    return next(action for action in page.records.kinds.actions() if action.data() is kind)
+
+
+def group_of(page, kind):
+    """Where the records of a kind are listed."""
+    return page.records.tree.topLevelItem(list(KIND_TITLES).index(kind))
+
+
+def fill(dialog, texts):
+    """Type into the fields of a record's form, or choose where there is a list."""
+    for name, text in texts.items():
+        box = dialog.boxes[name]
+        if isinstance(box, QComboBox) and not box.isEditable():
+            QTest.keyClicks(box, text)
+        else:
+            type_into(box.lineEdit() if isinstance(box, QComboBox) else box, text)
+
+
+def filled(texts, button="OK"):
+    """A step: fill the fields of a record's form and press a button."""
+
+    def step(dialog):
+        fill(dialog, texts)
+        press(button)(dialog)
+
+    return step
 
 
 def test_without_a_model_it_says_what_to_open(page):
@@ -490,88 +522,90 @@ def test_damaged_records_are_told_and_the_model_is_still_there(opened):
     ],
 )
 def test_a_form_says_what_is_wrong_and_stays(opened, kind, texts, problem):
-    dialog = RecordDialog(kind, opened.controller.card.panels[0].global_id, None, str, opened.left)
-    for name, text in texts.items():
-        dialog.boxes[name].setText(text)
-    dialog.accept()
-    assert dialog.found is None
-    assert problem in dialog.problem.text()
-    dialog.deleteLater()
+    global_id = opened.controller.card.panels[0].global_id
+    opened.controller.select(global_id)
+    said = []
+
+    def wrong(dialog):
+        fill(dialog, texts)
+        press("OK")(dialog)
+        said.append((dialog.isVisible(), dialog.problem.isVisible(), dialog.problem.text()))
+        press("Cancel")(dialog)
+
+    with clicked(wrong):
+        adds(opened, kind).trigger()
+    ((is_open, is_shown, words),) = said
+    assert is_open
+    assert is_shown
+    assert problem in words
+    assert opened.controller.entries_of(kind, global_id) == ()
 
 
 def test_forms_make_records_and_change_them(opened):
     global_id = opened.controller.card.panels[0].global_id
-    dialog = RecordDialog(Defect, global_id, None, str, opened.left)
-    dialog.boxes["kind"].setText("crack")
-    dialog.boxes["u"].setText("0,25")
-    dialog.boxes["v"].setText("0.5")
-    dialog.boxes["severity"].setCurrentIndex(2)
-    dialog.accept()
-    made = dialog.found
+    opened.controller.select(global_id)
+    with clicked(filled({"kind": "crack", "u": "0,25", "v": "0.5", "severity": "3"})):
+        adds(opened, Defect).trigger()
+    (made,) = opened.controller.entries_of(Defect, global_id)
     assert (made.kind, made.severity, made.u, made.v, made.status) == ("crack", 3, 0.25, 0.5, "open")
-    opened.controller.put(made)
-    kept = RecordDialog(Defect, global_id, None, str, opened.left)
-    before = opened.controller.entries_of(Defect, global_id)[0]
-    kept = RecordDialog(Defect, global_id, before, str, opened.left)
-    kept.boxes["note"].setPlainText("grows")
-    kept.accept()
-    opened.controller.put(kept.found)
-    after = opened.controller.entries_of(Defect, global_id)
-    assert [(entry.key, entry.note) for entry in after] == [(before.key, "grows")]
-    named = RecordDialog(Attribute, global_id, None, str, opened.left)
-    named.boxes["name"].setCurrentText("thickness")
-    named.boxes["value"].setText("8,5")
-    named.accept()
-    assert named.found == Attribute(global_id, "thickness", 8.5, "number", "mm")
+    opened.records.tree.setCurrentItem(group_of(opened, Defect).child(0))
+    with clicked(filled({"note": "grows"})):
+        opened.records.change.click()
+    assert opened.controller.entries_of(Defect, global_id) == (replace(made, note="grows"),)
+    with clicked(filled({"name": "thickness", "value": "8,5"})):
+        adds(opened, Attribute).trigger()
+    (named,) = opened.controller.entries_of(Attribute, global_id)
+    assert named == Attribute(global_id, "thickness", 8.5, "number", "mm", named.key)
 
 
 def test_records_are_added_and_changed_in_a_form_and_not_when_it_is_left(opened):
     global_id = opened.controller.card.panels[0].global_id
     opened.controller.select(global_id)
-    add = opened.records.kinds.actions()[list(KIND_TITLES).index(Defect)]
-
-    def fill(kind, button):
-        def step(dialog):
-            type_into(dialog.boxes["kind"], kind)
-            press(button)(dialog)
-
-        return step
-
-    for step in (fill("crack", "Cancel"), escape, shut):
+    add = adds(opened, Defect)
+    for step in (filled({"kind": "crack"}, "Cancel"), escape, shut):
         with clicked(step):
             add.trigger()
     assert opened.controller.entries_of(Defect, global_id) == ()
-    with clicked(fill("crack", "OK")):
+    with clicked(filled({"kind": "crack"})):
         add.trigger()
     assert [found.kind for found in opened.controller.entries_of(Defect, global_id)] == ["crack"]
-    group = opened.records.tree.topLevelItem(list(KIND_TITLES).index(Defect))
-    opened.records.tree.setCurrentItem(group.child(0))
-    with clicked(fill("chip", "OK")):
+    opened.records.tree.setCurrentItem(group_of(opened, Defect).child(0))
+    with clicked(filled({"kind": "chip"})):
         opened.records.change.click()
     assert [found.kind for found in opened.controller.entries_of(Defect, global_id)] == ["chip"]
 
 
 def test_a_picture_goes_with_a_defect_and_a_file_with_a_document(opened, tmp_path):
     global_id = opened.controller.card.panels[0].global_id
+    opened.controller.select(global_id)
     (tmp_path / "crack.png").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(40))
     (tmp_path / "sheet.pdf").write_bytes(b"%PDF-1.7")
-    opened.controller.put(Defect(global_id, "crack", 3, "2026-05-04"), tmp_path / "crack.png")
-    dialog = RecordDialog(Document, global_id, None, str, opened.left)
-    dialog.boxes["title"].setText("Data sheet")
-    for no in ("Cancel", escape, shut):
-        with clicked(no):
-            dialog.choose.click()
-        assert dialog.file is None
-    with clicked(choose(tmp_path / "sheet.pdf")):
-        dialog.choose.click()
-    dialog.accept()
-    opened.controller.put(dialog.found, dialog.file)
-    assert opened.controller.entries_of(Defect, global_id)[0].picture.endswith(".png")
-    assert len(opened.controller.entries_of(Document, global_id)[0].sha256) == 64
     (tmp_path / "no.png").write_bytes(b"text")
-    opened.controller.put(Defect(global_id, "crack", 3, "2026-05-04"), tmp_path / "no.png")
+    left = []
+
+    def with_file(texts, times=1):
+        def step(dialog):
+            fill(dialog, texts)
+            for _ in range(times):
+                left.append(dialog.file)
+                click_on(dialog, dialog.choose)
+            press("OK")(dialog)
+
+        return step
+
+    with clicked(with_file({"kind": "crack"}), choose(tmp_path / "crack.png")):
+        adds(opened, Defect).trigger()
+    (defect,) = opened.controller.entries_of(Defect, global_id)
+    assert defect.picture.endswith(".png")
+    left.clear()
+    with clicked(with_file({"title": "Data sheet"}, 4), "Cancel", escape, shut, choose(tmp_path / "sheet.pdf")):
+        adds(opened, Document).trigger()
+    assert left == [None] * 4, "a file dialog that was left chose none"
+    assert len(opened.controller.entries_of(Document, global_id)[0].sha256) == 64
+    with clicked(with_file({"kind": "crack"}), choose(tmp_path / "no.png")):
+        adds(opened, Defect).trigger()
     assert "picture" in opened.messages[-1].text
-    assert len(opened.controller.entries_of(Defect, global_id)) == 1
+    assert opened.controller.entries_of(Defect, global_id) == (defect,)
 
 
 def test_a_click_is_no_drag_and_a_drag_no_click(opened):

@@ -13,7 +13,7 @@ from groundstation.services.project.document import Document
 from groundstation.services.project.session import Session
 from planning.geo.frames import Origin
 from planning.geo.mesh import box_mesh, join
-from tests.gui.driving import turn_until
+from tests.gui.driving import press_in, turn_until
 
 FRAME_PX = 8
 """Between a box and its words, on either side."""
@@ -98,7 +98,7 @@ def test_building_with_windows_is_shown_and_taken_over_in_one_step(opened, share
     assert hands.taken == [], "options that were not looked at are not taken over"
     hands.again()
     assert "414.3 m above the ellipsoid" in dialog._summary.text()
-    dialog.accept()
+    press_in(dialog, "Import")
     assert [model.site.n_panels for model in hands.taken] == [57]
     assert len(hands.taken[0].sha256) == 64
 
@@ -139,7 +139,7 @@ def test_mesh_becomes_a_site_field_by_field(opened, tower_mm):
     hands.idle()
     assert dialog.error() == ""
     assert "Panels: 280" in dialog._summary.text()
-    dialog.accept()
+    press_in(dialog, "Import")
     (model,) = hands.taken
     assert model.site.origin.lat_deg == 47.3769
     np.testing.assert_allclose(np.ptp(model.building.vertices_enu_m, axis=0), [36.0, 20.0, 42.0], atol=1e-3)
@@ -256,7 +256,7 @@ def test_a_ground_that_is_not_clear_is_asked_for_in_the_form(opened, tmp_path):
     QTest.keyClick(form._ground, Qt.Key.Key_Return)
     hands.again()
     assert hands.dialog.can_import()
-    hands.dialog._accept.click()
+    press_in(hands.dialog, "Import")
     (model,) = hands.taken
     assert model.building.vertices_enu_m[:, 2].min() == pytest.approx(model.site.airspace.ground_z_m)
 
