@@ -12,7 +12,7 @@ WORKERS ?= 3
 # What took longest is said at the end.
 SLOWEST := --durations=30 --durations-min=0.5
 # Tests that read the sources alone are part of `make check`.
-FAST_TESTS := not slow and not benchmark and not alone and not lint
+FAST_TESTS := not slow and not long and not benchmark and not alone and not lint
 WARM := $(patsubst %,$(VENV)/.warm-%,planning missions.simulator reconstruction)
 UNUSED := tests|sympy|plotly|pymavlink.dialects|torch._inductor|torch.testing|ifcopenshell.express|open3d._ml3d
 UNUSED := $(UNUSED)|dask.array|dask.dataframe|fontTools|mypyc|pip|pygments.lexers|setuptools
@@ -22,7 +22,7 @@ TEXTS := $(wildcard groundstation/gui/translations/reflight_*.ts)
 # Compiled Python is kept also where the environment says not to: every test process would compile all of it again.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: setup demo test test-all check check-style check-types check-imports check-sources check-docs docs coverage ready-to-test compiled-tests alone benchmark benchmark-gpu tables format
+.PHONY: setup demo test test-long test-all check check-style check-types check-imports check-sources check-docs docs coverage ready-to-test compiled-tests alone benchmark benchmark-gpu tables format
 .PHONY: translations pictures foreign clean
 
 setup: $(VENV)/.ready $(WARM)
@@ -92,6 +92,12 @@ compiled-tests: $(VENV)/.ready
 test:
 	$(MAKE) --jobs $(WORKERS) ready-to-test
 	$(PY) -m pytest -n $(WORKERS) --dist worksteal $(SLOWEST) -m '$(FAST_TESTS)'
+
+# Only the files with such tests are read, as below.
+test-long:
+	$(MAKE) --jobs $(WORKERS) ready-to-test
+	$(PY) -m pytest -n $(WORKERS) --dist worksteal $(SLOWEST) -m 'long and not slow and not benchmark and not alone' \
+		$$(grep -rl --include='test_*.py' 'mark\.long' tests)
 	$(MAKE) alone FAST='not slow and'
 
 # Programs of others that read what we write, for tests that are skipped without them: Python's, those of npm,
@@ -114,7 +120,6 @@ test-all: foreign check
 	$(PY) -m pytest -n $(WORKERS) --dist worksteal --hypothesis-profile thorough $(SLOWEST) -m 'not benchmark and not alone and not lint'
 	$(MAKE) alone
 
-# Only the files with such tests are read.
 alone:
 	$(PY) -m pytest $(SLOWEST) -m '$(FAST) alone and not benchmark' $$(grep -rl --include='test_*.py' 'mark\.alone' tests)
 

@@ -47,6 +47,7 @@ def building(tmp_path):
     return path
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("pilot", [Language.ENGLISH, slow(Language.GERMAN)], indirect=True)
 def test_from_a_real_building_to_a_report_of_the_flight(pilot, building):
     pilot.see("start")

@@ -12,6 +12,7 @@ def test_every_bundled_site_is_offered():
     assert sorted(OFFERED) == sorted(SCENES)
 
 
+@pytest.mark.long
 def test_demo_plans_checks_and_exports_and_says_where_things_are(reflight, tmp_path):
     folder = tmp_path / "new folder" / "ä"
     done = reflight("demo", "--scene", "single-panel", "--out", folder)

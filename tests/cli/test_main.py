@@ -183,6 +183,7 @@ def test_a_site_with_characters_the_terminal_lacks_is_no_error(process, pane):
     assert "gr\\xf6\\xdfe.json: expected a site file" in done.stderr
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="/dev/full exists on Linux only")
 def test_output_that_cannot_be_written_is_one_line_and_status_1(pane):
     with Path("/dev/full").open("w") as full:
@@ -235,6 +236,7 @@ def processor_s(pid):
     return sum(60**place * float(part) for place, part in enumerate(reversed(told.stdout.strip().split(":"))))
 
 
+@pytest.mark.long
 @pytest.mark.skipif(os.name == "nt", reason="sends SIGINT as a POSIX terminal does")
 def test_ctrl_c_in_the_middle_of_a_plan_leaves_no_file_and_no_traceback(tmp_path):
     site = write_scene("tower", tmp_path)

@@ -36,6 +36,7 @@ def found(flight):
     return out, json.loads(told.getvalue())
 
 
+@pytest.mark.long
 def test_photos_and_a_mesh_become_a_site_that_can_be_planned(flight, found, reflight, tmp_path):
     _, made = flight
     out, told = found

@@ -282,6 +282,7 @@ def test_a_full_disk_leaves_the_old_plan(reflight, pane, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == [out]
 
 
+@pytest.mark.long
 def test_stdout_holds_one_json_object_and_nothing_else_in_a_real_process(process, pane, tmp_path):
     done = process("plan", pane / "site.json", "-o", tmp_path / "p.json", "--views", 2, "--json")
     assert done.returncode == 0, done.stderr

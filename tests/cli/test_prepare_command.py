@@ -19,6 +19,7 @@ def flight(tmp_path_factory):
     return folder
 
 
+@pytest.mark.long
 def test_photos_become_a_data_set_that_names_every_panel(flight, reflight, tmp_path):
     site, out = tmp_path / "found.site.json", tmp_path / "dataset"
     assert (

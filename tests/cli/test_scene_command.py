@@ -61,6 +61,7 @@ def test_the_bundled_scenes_are_listed(reflight):
     assert reflight("scene", "list", "--json").json == {"scenes": BUNDLED_TEXTS}
 
 
+@pytest.mark.long
 def test_the_photos_of_a_plan_are_rendered_where_it_has_its_views(render, pane, tmp_path):
     done = render("--plan", pane / "plan.json")
     assert done.status == 0, done.err

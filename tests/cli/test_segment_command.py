@@ -20,6 +20,7 @@ def photo(tmp_path_factory):
     return path
 
 
+@pytest.mark.long
 def test_panels_are_written_in_pixels_of_the_photo(reflight, photo, tmp_path):
     done = reflight("segment", photo, "-o", tmp_path / "panels.json", "--json")
     assert done.status == 0

@@ -78,6 +78,7 @@ def test_plan_writes_table_and_picture_and_names_the_winner(site, tmp_path, caps
     assert last["covered"] == last["finest_covered"]
 
 
+@pytest.mark.long
 def test_plan_answers_both_questions_in_words_and_tells_what_could_not_be_done(site, tmp_path, capsys):
     options = ["--methods", "pso", "--precisions", "f32", "--steps", "30", "--candidates", "20000"]
     assert command("plan", site, "-o", tmp_path, *options, "--coverage", "0.9", "--time-budget", "600") == 0

@@ -140,6 +140,7 @@ ASKING = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("name", ASKING)
 def test_nothing_happens_when_the_user_thinks_better_of_it(application, controller, name):

@@ -164,6 +164,7 @@ def test_the_window_speaks_german_once_it_is_chosen(controller):
     ]
 
 
+@pytest.mark.long
 def test_no_two_german_entries_of_a_menu_share_a_letter(controller):
     bar = controller.window.menuBar()
     for name in controller.window.tab_names():

@@ -221,6 +221,7 @@ def killed_at(case: Case, number: int) -> bool:
     return status == -9
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("write", quick, ids=[write.name for write in quick])
 def test_a_command_that_is_killed_leaves_old_or_new(write, workspace, tmp_path, forks):
     case, rng = Case(write, workspace, tmp_path, forks), random.Random(zlib.crc32(write.name.encode()))
@@ -270,6 +271,7 @@ def full_at(case: Case, **options: object) -> None:
             assert set(case.state()) - set(case.old) <= {"m/checkpoint.safetensors", "m/training.json"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("write", quick, ids=[write.name for write in quick])
 def test_a_full_disk_changes_nothing(write, workspace, tmp_path, forks):
     case = Case(write, workspace, tmp_path, forks)

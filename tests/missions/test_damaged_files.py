@@ -65,6 +65,7 @@ def damages(file_format: FileFormat, autopilot: Autopilot, n: int) -> Iterator[b
     return (damage(content, rng) for _ in range(n))
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("autopilot", list(Autopilot))
 @pytest.mark.parametrize("file_format", list(FileFormat))

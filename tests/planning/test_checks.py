@@ -92,6 +92,7 @@ def test_a_good_plan_keeps_every_rule_and_every_measured_value_is_stated() -> No
             assert np.isfinite(f.value)
 
 
+@pytest.mark.long
 def test_low_viewpoints_and_paths_are_errors_beside_the_column_above_home() -> None:
     low = finding(moved(0, position_enu_m=(0.0, -12.0, 4.2)), "low-flight")
     assert (low.severity, low.value, low.limit) == (Severity.ERROR, pytest.approx(4.2), 5.0)

@@ -193,6 +193,7 @@ def plan_here() -> Plan:
     return plan_kiosk(kiosk(), n_views=12).plan
 
 
+@pytest.mark.long
 @pytest.mark.few(2)
 @pytest.mark.parametrize("offset", OFFSETS)
 @pytest.mark.parametrize("precision", ["f32", "f64"])
@@ -238,6 +239,7 @@ def test_a_site_at_the_edge_of_the_coordinates_allowed_is_planned_as_well_as_at_
     assert abs(len(seen) - there.coverage.covered) <= 1
 
 
+@pytest.mark.long
 def test_a_panel_alone_without_any_mesh_is_kept_away_from() -> None:
     model = replace(kiosk(building_mesh=None, obstacles=()), building=empty_mesh(), obstacles=())
     plan = plan_kiosk(model).plan

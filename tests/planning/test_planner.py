@@ -238,6 +238,7 @@ def without_wall_times(plan: Plan) -> str:
     return json.dumps(content)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("precision", "goal"), [("f32", {"n_views": 5}), slow("f32", {"share": 0.3}), slow("f64", {"share": 0.3})]
 )
@@ -264,6 +265,7 @@ def test_improved_plans_repeat_too_when_the_search_ends_by_itself(monkeypatch: p
     assert first.plan.coverage.covered == 3
 
 
+@pytest.mark.long
 def test_both_precisions_plan_alike() -> None:
     plans = [
         plan_flight(kiosk(), replace(REQUESTS["share"], share=0.6, precision=precision, time_budget_s=600.0)).plan
@@ -342,6 +344,7 @@ def test_a_time_budget_too_small_for_everything_still_gives_a_plan_soon_after(sc
     assert is_flyable(check_plan(plan, model))
 
 
+@pytest.mark.long
 def test_bounds_hold_for_what_they_are_stated_for() -> None:
     certified = replace(REQUESTS["views"], greedy=replace(FEW, certify=True, objective="sections"))
     planned = planned_again(kiosk, certified)
@@ -449,6 +452,7 @@ def test_plans_of_whole_sites_keep_the_contract(scene: str, goal: dict[str, int]
     assert is_flyable(check_plan(plan, model))
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("method", ["greedy", "pso", "noto", "orbit"])
 def test_every_method_takes_a_seed_of_63_bits(method: str, tmp_path: Path) -> None:

@@ -53,6 +53,7 @@ def test_a_share_that_spacing_keeps_from_being_reached_names_it_and_the_panels()
     assert free.open_sections == ()
 
 
+@pytest.mark.long
 def test_sections_that_more_views_would_cover_are_told_from_those_never_decided(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -197,6 +197,7 @@ def test_refining_never_loses_and_stops_when_asked():
     np.testing.assert_array_equal(untouched.positions_enu_m, views.positions_enu_m)
 
 
+@pytest.mark.long
 def test_particle_swarm_never_gets_worse_and_keeps_every_constraint():
     problem = problem_of("office")
     parameters = PsoParameters(population=12, iterations=25)

@@ -69,6 +69,7 @@ def around(x0, y0, x1, y1, lower=0, upper=500):
     return ed269(ed269_feature(ed269_volume(polygon(ring), lower, upper)))
 
 
+@pytest.mark.long
 def test_a_site_without_zones_says_that_nobody_looked():
     (note,) = source_ages(site(), NOON)
     assert note.severity is Severity.NOTE
@@ -161,6 +162,7 @@ def test_old_sources_and_those_that_ended_are_warnings():
     assert [f.severity for f in source_ages(model, NOON + timedelta(days=31))] == [Severity.WARNING]
 
 
+@pytest.mark.long
 def test_plans_keep_out_of_zones_and_those_of_another_time_do_not_count():
     content = ed269(
         ed269_feature(ed269_volume(polygon(square(-20.0, 10.0, 12.0)))),

@@ -100,6 +100,7 @@ def test_a_name_of_this_program_stays_its_own(reflight, flight, tmp_path):
     assert b"<kml" in (tmp_path / "a.kml").read_bytes()
 
 
+@pytest.mark.long
 def test_the_help_does_not_wait_for_plug_ins(installed):
     code = "import sys; from groundstation.cli.main import main; main(['-h'], None); "
     code += "print('importlib.metadata' in sys.modules)"

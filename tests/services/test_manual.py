@@ -54,6 +54,7 @@ def headings(page):
     return re.findall(r"^#{1,6}\s+(.*?)\s*$", page.read_text("utf-8"), re.M)
 
 
+@pytest.mark.long
 def test_a_long_page_comes_in_parts_that_together_are_the_page():
     page = CHECKOUT / "benchmarks.md"
     whole = page.read_text("utf-8")

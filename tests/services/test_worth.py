@@ -60,6 +60,7 @@ def test_what_is_finished_is_not_done_again(tmp_path):
     assert run_trial(WorthRequest("no such scene", lights=("radiance-grid",)), trial, tmp_path) == known
 
 
+@pytest.mark.long
 def test_other_scenes_and_settings_have_folders_of_their_own(tmp_path):
     base = WorthRequest("planar")
     others = [replace(base, scene="curved"), replace(base, width_px=64), replace(base, n_unseen=9)]

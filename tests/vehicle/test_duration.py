@@ -68,6 +68,7 @@ def test_a_plan_timed_by_its_items_keeps_its_other_sorties():
     assert replace(timed, sorties=twice.sorties) == twice
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("profile_id", ["m3e", "ardupilot", "px4"])
 def test_paces_of_aircraft_that_fly_at_once_span_what_both_autopilots_take(profile_id):
     site_model = single_panel()

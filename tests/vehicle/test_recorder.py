@@ -37,6 +37,7 @@ def flown(autopilot, loss, seed):
     return outcome.record, plan
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("autopilot", "seed"),

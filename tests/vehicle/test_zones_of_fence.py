@@ -68,6 +68,7 @@ def areas(fences):
     return found
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("autopilot", [slow(Autopilot.ARDUPILOT), Autopilot.PX4])
 def test_zones_of_the_time_come_back_from_the_vehicle_as_they_were_sent(autopilot):
     model, plan, orders = orders_of()

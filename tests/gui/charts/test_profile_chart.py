@@ -36,6 +36,7 @@ def settle(application) -> None:
         application.processEvents()
 
 
+@pytest.mark.long
 @pytest.mark.few(5)
 @pytest.mark.parametrize("points", [9.0, 14.4, 18.0])
 @pytest.mark.parametrize("size", [(1000, 300), (900, 150), (640, 110), (420, 80), (200, 60)])
@@ -59,6 +60,7 @@ def test_names_of_lines_lie_beside_each_other_and_within_the_chart(application, 
         ]
 
 
+@pytest.mark.long
 def test_titles_of_axes_are_as_large_as_the_windows_letters_and_smaller_where_the_chart_is_low(application, chart):
     apply_theme(application, Theme.LIGHT, 1.6)
     axis = chart.plots()[0].getAxis("left")

@@ -18,6 +18,7 @@ from tests.gui.fly.test_fly_page import connect, controller, has_landed, page, t
 __all__ = ["controller", "page"]
 
 
+@pytest.mark.long
 def test_in_flight_the_view_has_the_room_of_the_lists_and_a_joystick_returns_by_a_hold(application, controller, page):
     """Figures over the view, the lists when they are wanted; the report brings them back."""
     shared_view = controller.window.shared_view

@@ -365,6 +365,7 @@ def test_a_new_window_takes_the_flight_over(application, controller, page):
     assert again.strip.states()[0][1] is ViewState.TAKEN
 
 
+@pytest.mark.long
 def test_what_was_noted_and_told_before_is_said_in_a_language_that_is_chosen_later(application, controller, page):
     connect(application, page)
     ask_for(page, Request.UPLOAD)
@@ -549,6 +550,7 @@ def test_pressing_the_keyboard_twice_gives_no_second_order(application, controll
     assert heard == [Request.UPLOAD]
 
 
+@pytest.mark.long
 def test_a_double_click_on_start_asks_once_and_orders_nothing_else(application, controller, page):
     connect(application, page)
     ask_for(page, Request.UPLOAD)
@@ -735,6 +737,7 @@ def answer(text):
     return step
 
 
+@pytest.mark.long
 def test_a_return_through_the_building_needs_a_typed_word(application, radio, controller, page, monkeypatch):
     radio.changes = {
         "autopilot": Autopilot.PX4,
@@ -879,6 +882,7 @@ def test_after_disconnecting_no_battery_and_no_height_is_shown_for_that_of_now(a
     turn_until(application, lambda: "100%" in page.readouts.text())
 
 
+@pytest.mark.long
 def test_a_flight_that_was_disconnected_in_the_air_is_not_flown(application, controller, page):
     connect(application, page, speed_up=10.0)
     take_off(application, page)

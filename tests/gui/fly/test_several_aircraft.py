@@ -172,6 +172,7 @@ def is_paused(page, number):
     return Request.RESUME in aircraft(page, number).view.may
 
 
+@pytest.mark.long
 def test_a_plan_for_two_shows_two_and_what_is_asked_is_asked_of_the_selected_one(application, controller, several):
     page = several
     assert page.fleet.isVisible()

@@ -105,6 +105,7 @@ def test_a_plan_is_checked_by_itself_and_its_panels_are_counted(page, context, p
     assert all(action.isEnabled() for action in page.actions())
 
 
+@pytest.mark.long
 def test_the_check_button_has_the_plan_proved_and_an_edit_takes_the_verdict_away(page, context, planned, idle):
     context.session.open(opened(planned), None)
     idle(lambda: page.findings.verdict().startswith("Ready to fly"))
@@ -300,6 +301,7 @@ def test_only_the_last_wish_of_the_export_form_is_made(page, context, planned, i
     dialog.close()
 
 
+@pytest.mark.long
 def test_a_folder_that_cannot_be_written_is_told_in_the_dialog(page, context, planned, idle, tmp_path):
     context.session.open(opened(planned), None)
     dialog = page.export()

@@ -37,6 +37,7 @@ def dialog_of(page, idle, context, planned):  # noqa: F811
     return page._shared_view.window().findChildren(SendDialog)[-1]
 
 
+@pytest.mark.long
 def test_a_route_of_dji_fly_is_replaced_once_the_pilot_agrees(page, context, planned, idle, said, devices):  # noqa: F811
     dialog = dialog_of(page, idle, context, planned)
     assert (dialog.storage().name, dialog.storage().app) == ("RC2", App.DJI_FLY)

@@ -35,6 +35,7 @@ def state(dialog, idle, **values):  # noqa: F811
     idle()
 
 
+@pytest.mark.long
 def test_a_pilot_states_people_reads_the_class_and_saves_the_draft(page, context, planned, idle, said, tmp_path):  # noqa: F811
     dialog = dialog_of(page, idle, context, planned)
     assert "Ground risk class: not known" in dialog.state_text()

@@ -115,6 +115,7 @@ def test_what_comes_of_it_stands_below_with_who_sets_what(application, page):
     assert page.findings.texts() == ()
 
 
+@pytest.mark.long
 def test_the_plan_is_changed_at_once_and_undone_and_the_next_plan_has_it(application, controller):
     model = kiosk()
     controller.context.session.open(Document(model, (PlanEntry("plan-1", "Row", row()),), "plan-1"), None)

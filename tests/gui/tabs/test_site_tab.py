@@ -371,6 +371,7 @@ def test_delete_removes_what_was_picked_in_the_view(opened):
     assert remove not in hands.window.actions(), "other tabs have their own Delete"
 
 
+@pytest.mark.long
 def test_bad_site_files_are_told_and_leave_the_site(opened, tmp_path):
     hands = opened("roof")
     before = hands.context.document
@@ -402,6 +403,7 @@ def test_plans_of_the_site_before_are_put_away_and_undo_brings_them_back(opened)
     assert len(hands.context.document.plans) == 1
 
 
+@pytest.mark.long
 def test_mesh_obstacle_comes_from_a_file_and_bad_files_are_told(opened, tmp_path):
     hands = opened("office")
     crane = box_mesh(np.array([40.0, -40.0, 0.0]), np.array([44.0, -36.0, 30.0]))

@@ -52,6 +52,7 @@ def show_map(hands):
     return view
 
 
+@pytest.mark.long
 def test_zones_are_added_seen_authorised_and_taken_away(hands, zones):
     add(hands, zones)
     assert [source.file for source in hands.site.zones] == ["zones.json"]
@@ -142,6 +143,7 @@ def test_the_planned_time_decides_which_zones_the_next_plan_keeps_out_of(hands, 
     hands.idle()
 
 
+@pytest.mark.long
 def test_zones_stand_in_the_scene_and_say_beside_the_pointer_what_they_ask_for(hands, tmp_path):
     ring = square(70.0, -40.0, 12.0, ORIGIN)
     school = ed269_feature(ed269_volume(polygon(ring), lower=10, upper=60), message="Ask the head of the school.")

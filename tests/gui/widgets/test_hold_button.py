@@ -57,6 +57,7 @@ def no_hint():
     assert not QToolTip.isVisible()
 
 
+@pytest.mark.long
 def test_a_press_that_is_too_short_says_what_to_do(button):
     def by_mouse():
         QTest.mousePress(button, LEFT)

@@ -94,6 +94,7 @@ def test_window_opens_a_site_plans_it_and_shows_both(application, controller):
     assert n_orange[0] < 20 < 200 < n_orange[1], "the plan is not drawn"
 
 
+@pytest.mark.long
 def test_every_tab_can_be_shown_and_fits_a_small_screen(application, controller):
     for name in controller.window.tab_names():
         controller.window.show_tab(name)
@@ -164,6 +165,7 @@ def test_cancel_throws_a_plan_away_and_enough_keeps_the_best_so_far(application,
     assert len(controller.context.document.current.plan.viewpoints) >= 1
 
 
+@pytest.mark.long
 def test_the_time_of_a_job_goes_on_while_it_tells_nothing(application, controller):
     go_on = threading.Event()
 

@@ -71,6 +71,7 @@ def with_site(application, controller):
     turn_until_idle(application, controller)
 
 
+@pytest.mark.long
 def test_a_project_is_saved_and_opened_again(application, make_controller, entry, tmp_path):
     controller = make_controller()
     assert "Begin with a site" in controller.window.tab("site").left.start.findChild(QLabel).text()
@@ -114,6 +115,7 @@ def test_leaving_unsaved_work_asks_first(application, make_controller, tmp_path)
     assert open_project(tmp_path / "kept").document.site.site.name == "roof"
 
 
+@pytest.mark.long
 def test_the_folder_of_a_model_opens_on_its_tab_and_the_project_stays(application, make_controller, tmp_path):
     from groundstation.gui.model.model_controller import ModelController
 
@@ -129,6 +131,7 @@ def test_the_folder_of_a_model_opens_on_its_tab_and_the_project_stays(applicatio
     assert "Error" not in controller.window.messages.texts()
 
 
+@pytest.mark.long
 def test_a_damaged_project_is_refused_and_what_is_open_stays(application, make_controller, tmp_path):
     controller = make_controller()
     with_site(application, controller)
@@ -145,6 +148,7 @@ def test_a_damaged_project_is_refused_and_what_is_open_stays(application, make_c
     assert "not there any more" in controller.window.messages.texts()
 
 
+@pytest.mark.long
 def test_a_full_disk_leaves_the_work_in_the_window(application, make_controller, entry, tmp_path, monkeypatch):
     controller = make_controller()
     with_site(application, controller)

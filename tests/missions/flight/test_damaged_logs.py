@@ -21,6 +21,7 @@ LONGEST_S = 30.0
 """Of processor time for any single log of this size, some hundred times what it takes; what hangs takes for ever."""
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("name", ["feedback.tlog", "captured.tlog", "flight.BIN", "flight.log", "flight.ulg"])
 def test_logs_damaged_at_random_are_read_or_refused(tmp_path: Path, name: str) -> None:

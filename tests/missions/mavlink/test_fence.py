@@ -152,6 +152,7 @@ def test_the_nearest_zones_come_first_where_there_is_no_room_for_all() -> None:
     assert "room for 64 corners" in findings[0].message
 
 
+@pytest.mark.long
 @settings(deadline=None)
 @given(
     st.integers(0, 2**32 - 1),

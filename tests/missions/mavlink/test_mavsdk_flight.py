@@ -38,6 +38,7 @@ def heard(changes: queue.SimpleQueue[Any], wanted: Any) -> list[Any]:
     return told
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, slow(PX4)])
 def test_mavsdks_client_flies_our_mission_to_the_end_on_our_vehicle(autopilot: Autopilot) -> None:
     plan = make_plan([(ring(4), {})])

@@ -289,6 +289,7 @@ def check_said(vehicle: SimulatedVehicle, said: list[Message]) -> None:
     assert all(math.isfinite(value) for value in vehicle.airframe.truth.position_enu_m)
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 @given(messages=st.lists(ground_messages(), max_size=60))

@@ -57,6 +57,7 @@ def sections_hit(model, space, n_seeds=6, n=3000):
     return hit
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("scene", "occlusion"), [("office", False), slow("library", False), slow("court", True), ("roof", False)]

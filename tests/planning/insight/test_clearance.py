@@ -88,6 +88,7 @@ def test_legs_into_the_building_and_the_no_fly_volume_have_negative_clearance():
     assert (found.no_fly.clearance_m[found.leg == 0] > 0.0).all()
 
 
+@pytest.mark.long
 def test_sites_without_no_fly_volumes_have_no_clearance_from_them():
     bare = scene("single-panel")
     space = unchecked_space(bare, 5.0)

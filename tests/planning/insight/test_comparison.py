@@ -31,6 +31,7 @@ def first_views(n):
     return replace(planned(), viewpoints=planned().viewpoints[:n], sorties=())
 
 
+@pytest.mark.long
 def test_a_plan_beside_itself_is_equal_in_every_row_and_better_in_none():
     same = compared(planned(), planned())
     for row in same.rows:

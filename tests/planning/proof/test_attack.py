@@ -29,6 +29,7 @@ def test_nothing_of_a_few_tampered_huts_is_wrongly_proved(tmp_path: Path) -> Non
     assert set(verdicts) == {"proved", "false", "not proved"}
 
 
+@pytest.mark.long
 def test_the_page_says_the_same_of_tampered_huts(tmp_path: Path) -> None:
     hut, _ = kept_hut()
     module, script = load(), QtScript()

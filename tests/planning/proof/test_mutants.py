@@ -26,6 +26,7 @@ def asked(tmp_path_factory: pytest.TempPathFactory) -> list[Question]:
     return questions(tmp_path_factory.mktemp("huts"), 10, sections)
 
 
+@pytest.mark.long
 def test_mutants_of_reading_and_geometry_are_told_from_the_verifier(asked: list[Question]) -> None:
     lines = SOURCE.splitlines()
     parts = [each for each in mutants(SOURCE) if each.line < lines.index("class Case:")]
@@ -34,6 +35,7 @@ def test_mutants_of_reading_and_geometry_are_told_from_the_verifier(asked: list[
     assert len(survivors) <= (1.0 - SHARE_TOLD) * len(tried), survivors
 
 
+@pytest.mark.long
 def test_a_program_without_a_change_is_not_told(asked: list[Question]) -> None:
     changed = next(each for each in mutants(SOURCE) if each.change == "Lt -> LtE" and told_by(each, asked) is not None)
     node, name, k = changed.place

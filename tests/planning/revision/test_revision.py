@@ -54,6 +54,7 @@ def test_any_edits_leave_what_a_revision_from_scratch_gives(name: str) -> None:
     edited()
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("name", sorted(SETTINGS))
 def test_going_to_any_other_plan_gives_what_taking_it_in_hand_anew_gives(name: str) -> None:

@@ -114,6 +114,7 @@ def test_the_plan_says_that_it_is_a_top_up_and_keeps_camera_aircraft_and_rules()
     assert found.coverage.covered == np.count_nonzero(coverage_counts(prepared_kiosk().problem.model, found.viewpoints))
 
 
+@pytest.mark.long
 def test_views_of_the_plan_keep_their_names_and_new_ones_get_further_names() -> None:
     plan = flown_plan()
     found = topped_up(plan, photos(plan, range(0, 25, 2))).plan
@@ -359,6 +360,7 @@ def alone(n_sections: int) -> tuple[Plan, int]:
     raise AssertionError(f"no view shows {n_sections} sections alone")
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize(("n_missing", "is_few"), [(1, True), (2, False)])
 def test_a_rest_is_negligible_up_to_a_two_hundredth_of_the_sections_and_its_cost_is_known(

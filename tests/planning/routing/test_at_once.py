@@ -49,6 +49,7 @@ def flown() -> tuple[SiteModel, Plan]:
     ).plan
 
 
+@pytest.mark.long
 def test_aircraft_keep_apart_whoever_is_early_or_late():
     """By the closed form of the motion, which starts were not found by."""
     _, plan = flown()

@@ -159,6 +159,7 @@ def test_a_battery_that_reaches_no_view_is_refused_with_its_time() -> None:
         choose(6.0, 3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("objective", ["sections", "image-error"])
 def test_fewer_candidates_are_compared_where_the_time_does_not_last(
     objective: Literal["sections", "image-error"], monkeypatch: pytest.MonkeyPatch
@@ -298,6 +299,7 @@ def test_a_whole_plan_keeps_the_number_of_batteries(n_batteries: int) -> None:
     assert math.isclose(sum(sortie.duration_s for sortie in plan.sorties), plan.duration_s)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("n_batteries", "time_budget_s"), [(20, 0.1), (7, 1.0), slow(3, 600.0)])
 def test_what_a_plan_for_many_batteries_says_is_what_it_flies(
     n_batteries: int, time_budget_s: float, monkeypatch: pytest.MonkeyPatch
@@ -353,6 +355,7 @@ def test_a_plan_that_flies_all_that_were_compared_does_not_say_that_there_is_no_
     assert said.endswith("no more viewpoints are compared for so many; ask for a number of views to fly more")
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("n_passed", [0, 3, 10])
 def test_cancelling_a_plan_for_batteries_throws_it_away(n_passed: int, monkeypatch: pytest.MonkeyPatch) -> None:

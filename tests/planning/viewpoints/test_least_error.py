@@ -216,6 +216,7 @@ def test_no_choice_of_any_candidates_leaves_less_than_the_bound(state, n_wanted)
         assert everything - value_of(state, set(chosen)) >= bound - 1e-6 * everything
 
 
+@pytest.mark.long
 def test_a_plan_takes_no_photo_twice_and_as_many_as_were_asked_for():
     pool = candidate_pool(prepared().problem, 0, 300)
     assert len(np.unique(np.column_stack(pool.views), axis=0)) == len(pool.views.heading_rad)
@@ -391,6 +392,7 @@ def test_walkers_stand_on_the_ground_before_the_facade_and_see_their_panel():
     assert ready.problem.flyable(drawn.positions_enu_m).all()
 
 
+@pytest.mark.long
 def test_a_plan_says_what_it_is_worth_and_a_changed_one_does_not(tmp_path):
     request = PlanRequest(n_views=12, greedy=GreedyParameters(n_candidates=300, certify=False), time_budget_s=10.0)
     planned = plan_flight(prepared().site_model, request, prepared=prepared())
@@ -415,6 +417,7 @@ def test_a_plan_says_what_it_is_worth_and_a_changed_one_does_not(tmp_path):
     assert other.batteries[-1].psnr_db < worth.batteries[-1].psnr_db
 
 
+@pytest.mark.long
 def test_good_enough_takes_fewer_batteries_the_more_each_has_to_bring():
     request = PlanRequest(greedy=GreedyParameters(n_candidates=300, certify=False), time_budget_s=3.0)
     sorties = [
@@ -440,6 +443,7 @@ def test_a_model_after_photos_tells_of_further_ones_what_the_model_of_all_tells(
     assert both.most_error == pytest.approx(model(name).after(more).after(photos).most_error, rel=1e-5)
 
 
+@pytest.mark.long
 def test_photos_that_are_there_count_in_the_worth_of_a_plan():
     request = PlanRequest(n_views=6, time_budget_s=2.0)
     site_model, ready = SCENES["single-panel"](), prepared()
@@ -450,6 +454,7 @@ def test_photos_that_are_there_count_in_the_worth_of_a_plan():
     assert second.gain_db < first.gain_db
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "deviation_db"), [("court", DEVIATION_DB), ("roof", FAR_DEVIATION_DB)])
 def test_what_is_expected_errs_more_where_panes_mirror_little_that_is_near(name, deviation_db):
     request = PlanRequest(n_views=6, greedy=GreedyParameters(n_candidates=300, certify=False), time_budget_s=10.0)

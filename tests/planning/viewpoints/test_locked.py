@@ -62,6 +62,7 @@ def plan_with_locked(request: PlanRequest, locked: tuple[Viewpoint, ...] = LOCKE
     return plan_flight(ready.site_model, replace(request, locked=locked), prepared=ready).plan
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("goal", sorted(GOALS))
 def test_locked_viewpoints_are_in_the_plan_as_they_are_and_nothing_else_has_their_names(goal: str) -> None:

@@ -228,6 +228,7 @@ def assert_more_views_never_show_less(site_model: SiteModel, counts: tuple[int, 
     assert covered[-1] >= 0.97 * n_reachable, f"{covered} of {n_reachable}"
 
 
+@pytest.mark.long
 def test_room_for_views_is_looked_for_until_an_end_is_asked_for_and_never_loses_anything() -> None:
     """However often it is asked in a round. With time enough the result is the one without a limit."""
     site_model = turned_site(33.0, n_rows=4, n_columns=5, panel_m=(1.2, 1.2), foot_m=6.0)

@@ -34,6 +34,7 @@ def set_gradients(values: list[Tensor], step: int) -> None:
         value.grad = None if (step + number) % 4 == 3 else torch.randn(value.shape, generator=generator)
 
 
+@pytest.mark.long
 def test_steps_are_those_of_torch_bit_by_bit() -> None:
     mine, theirs = parameters(), parameters()
     own = Adam(groups(mine), betas=(0.9, 0.99))

@@ -42,6 +42,7 @@ def wall_errors(buildings):
     return np.abs(hits.distance_m - [44.0, 44.0, 38.0])
 
 
+@pytest.mark.long
 def test_walls_lie_within_centimetres_and_blocks_close(plain):
     assert wall_errors(plain).max() < 0.05
     assert (closed_parts(plain.mesh.corners_enu_m) >= 0).all()
@@ -83,6 +84,7 @@ def test_glass_is_closed_by_its_frame_and_mirror_images_are_no_walls(glazed):
     assert southern == pytest.approx([6.0], abs=0.05)
 
 
+@pytest.mark.long
 def test_what_was_closed_is_told(plain, glazed):
     def seen_m2(buildings):
         return sum(face.area_m2 * face.seen_share for face in buildings.faces)

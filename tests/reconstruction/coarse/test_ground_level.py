@@ -62,6 +62,7 @@ def wall_points() -> np.ndarray:
     return np.column_stack([x.ravel(), np.full(x.size, WALL_Y), z.ravel()])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scale", [1.0, 0.03])
 def test_the_ground_is_where_photos_agree_and_not_where_points_end(scale):
     photos = walked()
@@ -72,6 +73,7 @@ def test_the_ground_is_where_photos_agree_and_not_where_points_end(scale):
     assert found == pytest.approx(scale * GROUND_Z, abs=scale * 0.02 * (EYES_Z - GROUND_Z))
 
 
+@pytest.mark.long
 def test_of_gentle_slopes_a_height_between_foot_and_cameras_is_told():
     photos = walked()
     sloping = taken(photos, slope=0.02)
@@ -79,6 +81,7 @@ def test_of_gentle_slopes_a_height_between_foot_and_cameras_is_told():
     assert GROUND_Z - 0.02 * WALL_Y < found < GROUND_Z
 
 
+@pytest.mark.long
 def test_ground_that_is_steep_or_shows_nothing_is_left_to_the_points():
     photos = walked()
     steep = taken(photos, slope=0.12)

@@ -33,6 +33,7 @@ def inspected(scene):
     return rows
 
 
+@pytest.mark.long
 def test_hostile_records_are_text_in_a_page_that_works(browser, tmp_path):
     scene = hostile_scene()
     content = cv2.imencode(".png", np.zeros((5, 5, 3), np.uint8))[1].tobytes()
@@ -360,6 +361,7 @@ def server():
         listening.close()
 
 
+@pytest.mark.long
 def test_the_policy_blocks_network_scripts_and_markup_from_text(any_browser, tmp_path, server):
     opened(any_browser, tmp_path / "page", synthetic_scene())
     address, asked = server
@@ -400,6 +402,7 @@ def test_without_webgl_the_records_are_still_there(browser, tmp_path):
     browser.cdp("Page.removeScriptToEvaluateOnNewDocument", **added)
 
 
+@pytest.mark.long
 def test_a_page_of_a_model_without_panes_says_nothing_of_reflections(any_browser, tmp_path):
     opened(any_browser, tmp_path / "panes", synthetic_scene(sizes=((50,),)))
     assert "Reflections" in any_browser.texts("#note")[0]

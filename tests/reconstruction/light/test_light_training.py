@@ -297,6 +297,7 @@ def bowed_photos(tmp_path_factory):
     return glass_rays(source, source.photos[:5]), source.panels, glass_rays(source, source.photos[5:])
 
 
+@pytest.mark.long
 def test_panes_stay_bowed_where_photos_show_that_they_are(bowed_photos):
     found = training(bowed_photos, config=BOWED)
     found.run(None, 1)

@@ -25,6 +25,7 @@ from tests.reconstruction.light.synthetic_folder import (
 )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("light", "is_near"), [(near, True), pytest.param(far, False, marks=pytest.mark.slow)])
 def test_what_is_mirrored_is_as_far_away_as_it_is(tmp_path, light, is_near):
     write_folder(tmp_path / "set", light, 24)

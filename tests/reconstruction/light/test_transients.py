@@ -136,6 +136,7 @@ def test_places_that_few_photos_show_are_no_evidence():
     assert evidence(errors.ravel(), own, PHOTOS) < 0.5 * TOLERANCE
 
 
+@pytest.mark.long
 @given(st.integers(6, 30), st.integers(-20, 20), st.integers(0, 2**32 - 1))
 def test_places_are_as_small_as_enough_photos_allow_in_whatever_unit(n_photos, exponent, seed):
     rng = np.random.default_rng(seed)

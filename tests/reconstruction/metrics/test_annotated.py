@@ -188,6 +188,7 @@ def windows_in(photos: PhotoSet) -> list[int]:
     return [len(np.unique(photo.index)) - 1 for photo in photos.photos()]
 
 
+@pytest.mark.long
 def test_real_cmp_photos_have_a_window_for_each_line_of_their_tables(shared_data: Path) -> None:
     photos = annotated_set("cmp", shared_data / "facades")
     tables = sorted((shared_data / "facades" / "cmp").glob("*.csv"))

@@ -119,6 +119,7 @@ def test_a_card_shows_models_where_its_picture_is_the_processors_and_comes_soone
     assert "there is no graphics card but llvmpipe" in found.reason
 
 
+@pytest.mark.long
 def test_a_card_that_takes_its_process_along_is_not_taken(splats: Splats, monkeypatch: pytest.MonkeyPatch) -> None:
     needs_card()
     assert devices._survives()
@@ -137,6 +138,7 @@ def test_a_device_that_is_not_there_is_refused_with_what_to_install(monkeypatch:
     check_device(SMALL)
 
 
+@pytest.mark.long
 def test_a_training_on_the_card_is_the_one_on_the_processor_and_survives_the_card(
     data_set, monkeypatch: pytest.MonkeyPatch
 ) -> None:

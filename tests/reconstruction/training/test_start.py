@@ -145,6 +145,7 @@ def test_of_several_lights_the_one_that_tells_most_together_with_splats_is_kept_
     assert not torch.equal(found[3], found[0])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("setting", "is_apart"), [("on", True), ("off", False)])
 def test_light_apart_is_as_asked_and_nothing_is_tried_for_it(tmp_path, monkeypatch, setting, is_apart):
     write_data_set(tmp_path / "same", n=10)

@@ -17,6 +17,7 @@ LEAST_GAIN_DB, MOST_GAIN_DB = 3.0, 14.0
 """7.4 dB were measured with 16 photos and 60 steps."""
 
 
+@pytest.mark.long
 def test_glass_is_told_better_than_by_splats_alone(tmp_path):
     folder = tmp_path / "glass"
     write_data_set(folder, n=16)

@@ -47,6 +47,7 @@ class Hands:
         return self.now_s
 
 
+@pytest.mark.long
 def test_traffic_tells_the_others_and_how_long_ago_they_were_heard():
     clock = Hands()
     traffic = Traffic(clock)

@@ -69,6 +69,7 @@ def fly(flight, follower):
     flight.request(Request.START)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("autopilot", [slow(Autopilot.ARDUPILOT), Autopilot.PX4])
 def test_a_sortie_is_flown_from_connecting_to_the_report(flight, tmp_path, autopilot):
     live, follower = flight(simulation(autopilot=autopilot))
@@ -126,6 +127,7 @@ def test_views_come_at_most_ten_times_a_second(flight):
     assert n_views > 0
 
 
+@pytest.mark.long
 def test_pause_resume_and_return_are_acknowledged(flight):
     live, follower = flight()
     fly(live, follower)
@@ -290,6 +292,7 @@ def test_a_mission_that_the_vehicle_refuses_is_never_called_on_board(flight):
     assert follower.view.on_board.mission is None
 
 
+@pytest.mark.long
 def test_a_camera_over_a_link_is_set_by_the_definition_file_that_the_pilot_named(flight, tmp_path):
     model, plan = planned()
     plan = obedient(plan, MANUAL)
@@ -344,6 +347,7 @@ def test_a_plan_that_breaks_a_rule_is_not_prepared_for_flight():
         prepare_sortie(replace(plan, constraints=wider), model, 1)
 
 
+@pytest.mark.long
 def test_the_vehicles_own_log_is_fetched_after_the_landing_and_reported(flight, tmp_path):
     live, follower = flight()
     fly(live, follower)

@@ -207,6 +207,7 @@ def test_a_radio_that_loses_messages_delays_and_loses_nothing_else(small):
     assert len(lossy.flight.sorties[0].photos) == len(plan.viewpoints)
 
 
+@pytest.mark.long
 def test_an_outage_in_flight_is_shown_and_survived(small):
     site, plan = small
     outage = (30.0, 30.0 + 3.0 * LINK_LOST_S)

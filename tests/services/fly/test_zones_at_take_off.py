@@ -10,6 +10,7 @@ from tests.planning.site.zones.zone_files import ed269, ed269_feature, ed269_vol
 from tests.planning.test_zones_of_flights import NIGHT, NOON, flight
 
 
+@pytest.mark.long
 def test_a_zone_of_the_night_is_no_hindrance_at_noon_and_one_in_the_evening():
     content = ed269(ed269_feature(ed269_volume(polygon(square(0.0, 0.0, 90.0))), applicability=NIGHT))
     model = with_zones(content)

@@ -95,6 +95,7 @@ def worker():
     worker.close()
 
 
+@pytest.mark.long
 def test_the_result_progress_quality_and_bound_come_back(worker):
     reports, trace = Reports(), Trace()
     assert worker.run(double, 21, trace=trace, monitor=reports) == 42
@@ -184,6 +185,7 @@ def test_a_result_that_cannot_be_sent_is_an_error_and_not_the_end_of_the_process
     assert worker.run(where) == process
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("end", "words"), [slow(die, "exit status 7"), (die_of_memory, "memory")])
 def test_a_lost_process_is_an_error_and_the_next_call_has_a_new_one(worker, end, words):
     if end is die_of_memory and sys.platform == "win32":

@@ -133,6 +133,7 @@ def test_two_exports_of_one_plan_share_it_out_alike(planned, monkeypatch):
     assert len(n_shared) == 1
 
 
+@pytest.mark.long
 def test_written_missions_carry_a_proof_that_the_verifier_accepts_and_that_a_moved_place_breaks(planned, tmp_path):
     plan, model = planned
     prepared = prepare_export(plan, model, FileFormat.MAVLINK_PLAN)
@@ -154,6 +155,7 @@ def test_written_missions_carry_a_proof_that_the_verifier_accepts_and_that_a_mov
     assert any(claim.verdict != PROVED for claim in verified(site, proved, proof, [mission]))
 
 
+@pytest.mark.long
 def test_missions_whose_check_is_cancelled_are_written_and_said_to_be_unchecked(planned, tmp_path):
     plan, model = planned
     prepared = prepare_export(plan, model, FileFormat.MAVLINK_PLAN)

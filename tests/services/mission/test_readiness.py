@@ -57,6 +57,7 @@ def with_views(*views: Viewpoint, **changes) -> Case:
     return Case.of(plan, kiosk(**{"obstacles": (), **changes}))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("shutter_s", "severity", "text"),
     [

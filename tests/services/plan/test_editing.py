@@ -39,6 +39,7 @@ def test_an_edit_s_effect_is_the_difference_of_both_plans_and_its_reverse_takes_
     np.testing.assert_array_equal(coverage_change(before, after), -coverage_change(after, before))
 
 
+@pytest.mark.long
 def test_problems_that_come_and_go_with_an_edit_are_told_and_those_that_stay_are_not() -> None:
     start = planned("kiosk")
     inside = move(start, "v0003", (0.0, -2.0, 5.0))

@@ -110,6 +110,7 @@ def test_a_plan_that_falls_short_of_the_request_says_so(site, request_, codes):
         assert finding.value < finding.limit
 
 
+@pytest.mark.long
 def test_no_end_of_gains_is_claimed_that_the_plan_written_does_not_have(site):
     """The clock is made to have run out long before: too few candidates are compared for what the battery could do."""
     office, stop_at = SCENES["office"](), PlanRequest(least_gain_db=0.2, greedy=QUICK, time_budget_s=5.0)
@@ -130,6 +131,7 @@ def test_no_end_of_gains_is_claimed_that_the_plan_written_does_not_have(site):
     assert "not-good-enough" not in {finding.code for finding in reached}
 
 
+@pytest.mark.long
 def test_the_goal_that_stands_where_none_was_set_is_not_missed_in_silence(site):
     """The time is up before anything is proved, so that far less is covered than what counts as possible."""
     request = PlanRequest(time_budget_s=5.0, greedy=QUICK)

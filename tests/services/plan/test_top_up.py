@@ -136,6 +136,7 @@ def test_everything_reachable_can_be_asked_for() -> None:
     assert found.together > planned().coverage.covered
 
 
+@pytest.mark.long
 def test_a_flight_of_another_plan_is_refused_by_its_checksum() -> None:
     other = replace(planned(), seed=7)
     with pytest.raises(InputError, match="flight of another plan: its plan has another checksum; name the plan file"):

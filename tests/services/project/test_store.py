@@ -46,6 +46,7 @@ def n_writes(tmp_path):
     return len(tried)
 
 
+@pytest.mark.long
 def test_every_single_write_may_fail(tmp_path):
     count, outcomes = n_writes(tmp_path), set()
     assert count > 30

@@ -100,6 +100,7 @@ def asked(settings):
     return TrainRequest(method="2dgs", iterations=100_000, settings=settings)
 
 
+@pytest.mark.long
 def test_it_is_looked_at_while_it_trains_and_waits_and_its_end_is_a_model(heard, card, asked, tmp_path):
     out, photo = tmp_path / "model", card.source.photos[0]
     heard.send(Train(card.folder, out, asked))

@@ -190,6 +190,7 @@ def test_what_may_have_changed_it_makes_it_unknown_until_it_is_read_again(orders
     assert sum(note.code == "mission-reread" for note in outcome.notes) >= 2
 
 
+@pytest.mark.long
 def test_a_vehicle_that_forgot_its_mission_in_a_restart_is_told_before_start(orders):
     toy = toy_at_home(orders)
     texts = []

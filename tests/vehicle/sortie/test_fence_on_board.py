@@ -204,6 +204,7 @@ def test_a_fence_that_is_switched_on_before_start_grounds_it_then(orders, bare):
     assert not toy.has_flown
 
 
+@pytest.mark.long
 def test_what_cannot_be_read_is_not_overwritten_and_not_taken_for_nothing(orders, bare):
     def deaf(**faults):
         toy = toy_at_home(orders, fences=list(square(orders, *AROUND, inside=True)), **faults)
@@ -228,6 +229,7 @@ def test_what_cannot_be_read_is_not_overwritten_and_not_taken_for_nothing(orders
     assert last(run, "geofence") is None
 
 
+@pytest.mark.long
 def test_a_vehicle_without_fences_flies_a_sortie_that_needs_none(orders, bare):
     toy = toy_at_home(orders)
     hear = toy.hear

@@ -464,6 +464,7 @@ def test_a_crops_truth_lies_where_its_picture_shows_it(seed: int) -> None:
     assert (outside / np.linalg.norm(sides, axis=-1)).max(initial=0.0) < 2.0  # a pixel of the picture, made larger
 
 
+@pytest.mark.long
 def test_changed_crops_are_finite_and_keep_their_truth() -> None:
     bank = bank_of([synthetic_picture(seed, 384) for seed in range(6)], 2)
     images, truth = bank.crops(24, np.random.default_rng(4), torch.Generator().manual_seed(4))

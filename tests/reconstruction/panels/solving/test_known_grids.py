@@ -86,6 +86,7 @@ def test_given_grids_are_used_and_their_photos_not_searched(curvature: float) ->
     assert [decision.effect for decision in found.search_decisions["A"]] == ["unrolling by arc length"]
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("curvature", [0.0, 0.05])
 @pytest.mark.parametrize("open_side", [-1, 0, 1])

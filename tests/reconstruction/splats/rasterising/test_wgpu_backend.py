@@ -66,6 +66,7 @@ def by_card(splats: MadeSplats, settings: RasterSettings = PLAIN, error: float =
     return found
 
 
+@pytest.mark.long
 @pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("made", "settings"),

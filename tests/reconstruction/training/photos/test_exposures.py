@@ -234,6 +234,7 @@ def patches(photo, seed):
     return cv2.resize(noise, (lens.width_px, lens.height_px), interpolation=cv2.INTER_LINEAR)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("what", ["even", "patches"])
 def test_a_photo_of_something_else_tells_no_gain_and_is_named(tmp_path, what):
     """As one taken by accident, or from inside a building that the site does not know."""
