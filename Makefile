@@ -1,4 +1,4 @@
-# make setup | demo | test | test-all | check | docs | coverage | benchmark | benchmark-gpu | tables | translations | pictures: each does all the set-up it needs.
+# make setup | demo | test | test-long | test-all | check | docs | coverage | benchmark | benchmark-gpu | tables | translations | pictures: each does all the set-up it needs.
 PYTHON ?= python3
 VENV := .venv
 ifeq ($(OS),Windows_NT)
