@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from planning.base.jit import inline, kernel
 from planning.coverage.reach_kernel import is_too_low
-from planning.geo.bvh import Bvh, build_bvh
+from planning.geo.bvh import Bvh, build_bvh, point_triangle_d2
 
 Array = NDArray[np.float64]
 
@@ -76,35 +76,33 @@ class Shadows(NamedTuple):
 
 
 @inline
-def _most(m: Array, offset: Array, half: Array) -> float:
+def _most(m0: float, m1: float, m2: float, offset: Array, half: Array) -> float:
     """Largest part along m of a box with half sizes `half`, centre at `offset`."""
     return float(
-        m[0] * offset[0] + m[1] * offset[1] + m[2] * offset[2]
-        + abs(m[0]) * half[0] + abs(m[1]) * half[1] + abs(m[2]) * half[2]
+        m0 * offset[0] + m1 * offset[1] + m2 * offset[2]
+        + abs(m0) * half[0] + abs(m1) * half[1] + abs(m2) * half[2]
     )  # fmt: skip
 
 
 @kernel
 def _is_beyond_plane(offset: Array, half: Array, panel: Panel, far: float) -> bool:
+    sides, axes = panel.sides, panel.axes
     for i in range(3):
-        if _most(panel.sides[i], offset, half) <= -SLACK_M:
+        if _most(sides[i, 0], sides[i, 1], sides[i, 2], offset, half) <= -SLACK_M:
             return True
-    u = offset[0] * panel.axes[1, 0] + offset[1] * panel.axes[1, 1] + offset[2] * panel.axes[1, 2]
-    v = offset[0] * panel.axes[2, 0] + offset[1] * panel.axes[2, 1] + offset[2] * panel.axes[2, 2]
+    u = offset[0] * axes[1, 0] + offset[1] * axes[1, 1] + offset[2] * axes[1, 2]
+    v = offset[0] * axes[2, 0] + offset[1] * axes[2, 1] + offset[2] * axes[2, 2]
     side = np.sqrt(u * u + v * v)
     if not side > 10.0 * SLACK_M:
         return False
-    sine, cosine = panel.outer[0], panel.outer[1]
-    form = np.empty(3)
-    for k in range(3):
-        radial = panel.axes[1, k] * (u / side) + panel.axes[2, k] * (v / side)
-        form[k] = sine * panel.axes[0, k] - cosine * radial
-    if _most(form, offset, half) <= -SLACK_M:
+    sine, u, v = panel.outer[0], panel.outer[1] * (u / side), panel.outer[1] * (v / side)
+    m0 = sine * axes[0, 0] - (axes[1, 0] * u + axes[2, 0] * v)
+    m1 = sine * axes[0, 1] - (axes[1, 1] * u + axes[2, 1] * v)
+    m2 = sine * axes[0, 2] - (axes[1, 2] * u + axes[2, 2] * v)
+    if _most(m0, m1, m2, offset, half) <= -SLACK_M:
         return True
     away = np.sqrt(offset[0] ** 2 + offset[1] ** 2 + offset[2] ** 2)
-    for k in range(3):
-        form[k] = -offset[k] / away
-    return bool(_most(form, offset, half) <= -far - SLACK_M)
+    return bool(_most(-offset[0] / away, -offset[1] / away, -offset[2] / away, offset, half) <= -far - SLACK_M)
 
 
 @kernel
@@ -126,49 +124,17 @@ def _is_in_cone(offset: Array, half: Array, panel: Panel) -> bool:
 
 
 @kernel
-def _nearest_point(p: Array, triangle: Array, q: Array) -> float:
-    """Distance of a point and a triangle, whose nearest point is filled into q."""
-    a, b, c = triangle[0], triangle[1], triangle[2]
-    ab, ac, ap = b - a, c - a, p - a
-    normal = np.cross(ab, ac)
-    area2 = (normal * normal).sum()
-    if area2 > 0.0:
-        s = (np.cross(ap, ac) * normal).sum() / area2
-        t = (np.cross(ab, ap) * normal).sum() / area2
-        if s >= 0.0 and t >= 0.0 and s + t <= 1.0:
-            for k in range(3):
-                q[k] = a[k] + s * ab[k] + t * ac[k]
-            return float(np.sqrt(((p - q) ** 2).sum()))
-    best = np.inf
-    for i in range(3):
-        start, way = triangle[i], triangle[(i + 1) % 3] - triangle[i]
-        square = (way * way).sum()
-        s = min(max(((p - start) * way).sum() / square, 0.0), 1.0) if square > 0.0 else 0.0
-        d2 = 0.0
-        for k in range(3):
-            d2 += (p[k] - start[k] - s * way[k]) ** 2
-        if d2 < best:
-            best = d2
-            for k in range(3):
-                q[k] = start[k] + s * way[k]
-    return float(np.sqrt(best))
-
-
-@kernel
-def _is_near(centre: Array, half: Array, triangle: Array, near: float) -> bool:
-    """Whether all corners of a box are nearer to a triangle; first what its centre says of the farthest of them."""
-    q, corner = np.empty(3), np.empty(3)
-    away = _nearest_point(centre, triangle, q)
-    farthest = away
-    if away > 0.0:
-        for k in range(3):
-            farthest += abs(centre[k] - q[k]) / away * half[k]
-    if not farthest <= near - SLACK_M:
-        return False
+def _is_near(centre: Array, half: Array, triangle: Array, near: float, corner: Array) -> bool:
+    """Whether all corners of a box are nearer to a triangle, the one that looks farthest first; `corner` is room."""
+    least = near - SLACK_M
+    first = 0
+    for k in range(3):
+        if 3.0 * centre[k] >= triangle[0, k] + triangle[1, k] + triangle[2, k]:
+            first |= 1 << k
     for i in range(8):
         for k in range(3):
-            corner[k] = centre[k] + (half[k] if i >> k & 1 else -half[k])
-        if not _nearest_point(corner, triangle, q) <= near - SLACK_M:
+            corner[k] = centre[k] + (half[k] if (i ^ first) >> k & 1 else -half[k])
+        if not (least > 0.0 and point_triangle_d2(corner, triangle) <= least * least):
             return False
     return True
 
@@ -178,7 +144,7 @@ def _near_triangle(centre: Array, half: Array, bvh: Bvh, near: float) -> int:
     """A triangle to which the whole box is nearer than `near`, by its number in the source; -1 for none."""
     if len(bvh.corners) == 0:
         return -1
-    stack = np.empty(64, np.int64)
+    stack, corner = np.empty(64, np.int64), np.empty(3)
     stack[0], depth = 0, 1
     while depth > 0:
         depth -= 1
@@ -194,7 +160,7 @@ def _near_triangle(centre: Array, half: Array, bvh: Bvh, near: float) -> int:
         child = bvh.child[node]
         if child < 0:
             for i in range(bvh.first[node], bvh.first[node] + bvh.size[node]):
-                if _is_near(centre, half, bvh.corners[i], near):
+                if _is_near(centre, half, bvh.corners[i], near, corner):
                     return int(bvh.source[i])
         else:
             stack[depth], stack[depth + 1] = child, child + 1
@@ -205,20 +171,27 @@ def _near_triangle(centre: Array, half: Array, bvh: Bvh, near: float) -> int:
 @kernel
 def _shadow(centre: Array, half: Array, shadows: Shadows) -> int:
     """A patch whose shadow holds the box, by its number; -1 for none."""
-    eye = shadows.eye
-    offset = centre - eye
-    reach = np.sqrt((offset * offset).sum()) + np.sqrt((half * half).sum())
+    offset, to_corner = np.empty(3), np.empty(3)
+    away2, size2 = 0.0, 0.0
+    for k in range(3):
+        offset[k] = centre[k] - shadows.eye[k]
+        away2 += offset[k] * offset[k]
+        size2 += half[k] * half[k]
+    reach = np.sqrt(away2) + np.sqrt(size2)
+    edges, faces = shadows.edges, shadows.faces
     for p in range(len(shadows.numbers)):
         hidden = True
         for i in range(shadows.edge_starts[p], shadows.edge_starts[p + 1]):
-            if not _most(-shadows.edges[i], offset, half) < -RATIO_SLACK * reach:
+            if not _most(-edges[i, 0], -edges[i, 1], -edges[i, 2], offset, half) < -RATIO_SLACK * reach:
                 hidden = False
                 break
         if not hidden:
             continue
         for i in range(shadows.face_starts[p], shadows.face_starts[p + 1]):
-            normal, corner = shadows.faces[i, :3], shadows.faces[i, 3:]
-            if not _most(-normal, centre - corner, half) < -RATIO_SLACK * (reach + 100.0) - SLACK_M:
+            for k in range(3):
+                to_corner[k] = centre[k] - faces[i, 3 + k]
+            most = _most(-faces[i, 0], -faces[i, 1], -faces[i, 2], to_corner, half)
+            if not most < -RATIO_SLACK * (reach + 100.0) - SLACK_M:
                 hidden = False
                 break
         if hidden:
