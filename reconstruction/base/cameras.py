@@ -1,4 +1,4 @@
-"""Cameras of photos: intrinsics with Brown's distortion, poses with covariance, projection and rays.
+"""Cameras of photos: intrinsics with Brown's distortion or of a fisheye, poses with covariance, projection and rays.
 
 Pixel coordinates are continuous, x to the right and y down: a picture covers [0, width] x [0, height], and the centre
 of its first pixel is (0.5, 0.5), as in COLMAP. OpenCV counts from that centre instead: its coordinates are ours minus
@@ -34,17 +34,29 @@ WIDENED = 1.5
 
 STRAIGHT = (0.0, 0.0, 0.0, 0.0, 0.0)
 
+STRAIGHT_HALF_DEG = 55.0
+"""From the optical axis along rows and columns, up to where a fisheye's picture is made straight: a pixel of the photo
+fills four and a half there, and ever more farther out, without showing more."""
+
+FISHEYE_STEPS, FISHEYE_ANGLES = 5, 2048
+"""Of Newton's iteration that takes a fisheye's distortion away, and angles that it starts from: each step doubles the
+right digits, and neighbouring angles are 0.0015 rad apart."""
+
 
 @dataclass(frozen=True, slots=True)
 class Intrinsics:
-    """A camera with Brown's distortion (D. C. Brown, 1971) in OpenCV's order.
+    """A camera with Brown's distortion (D. C. Brown, 1971) in OpenCV's order, or a fisheye's.
 
     Parameters
     ----------
     fx_px, fy_px, cx_px, cy_px
         Focal lengths and principal point in the continuous pixel coordinates of this module.
     distortion
-        k1, k2, p1, p2, k3; all 0 for a picture that is straight.
+        k1, k2, p1, p2, k3; all 0 for a picture that is straight, and of a fisheye.
+    fisheye
+        k1, k2, k3, k4 of a fisheye (J. Kannala and S. S. Brandt, 2006, Eq. 6, in OpenCV's form): what is seen at the
+        angle theta from the axis lies theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8) focal lengths from
+        the principal point. None for other lenses.
     """
 
     width_px: int
@@ -54,14 +66,17 @@ class Intrinsics:
     cx_px: float
     cy_px: float
     distortion: tuple[float, float, float, float, float] = STRAIGHT
+    fisheye: tuple[float, float, float, float] | None = None
 
     def __post_init__(self) -> None:
         if self.width_px < 1 or self.height_px < 1:
             raise ValueError(f"expected a picture of at least one pixel, got {self.width_px} x {self.height_px}")
         if not all(math.isfinite(f) and f > 0.0 for f in (self.fx_px, self.fy_px)):
             raise ValueError(f"fx_px, fy_px: expected positive focal lengths, got {self.fx_px}, {self.fy_px}")
-        if not all(map(math.isfinite, (self.cx_px, self.cy_px, *self.distortion))):
-            raise ValueError("cx_px, cy_px, distortion: expected finite numbers")
+        if not all(map(math.isfinite, (self.cx_px, self.cy_px, *self.distortion, *(self.fisheye or ())))):
+            raise ValueError("cx_px, cy_px, distortion, fisheye: expected finite numbers")
+        if self.fisheye is not None and self.distortion != STRAIGHT:
+            raise ValueError("distortion: expected 0 of a fisheye, which has numbers of its own")
 
     @classmethod
     def of(cls, camera: Camera) -> Intrinsics:
@@ -80,7 +95,7 @@ class Intrinsics:
     @property
     def is_straight(self) -> bool:
         """Whether straight lines are straight in the picture."""
-        return self.distortion == STRAIGHT
+        return self.fisheye is None and self.distortion == STRAIGHT
 
     @property
     def _reach_x(self) -> float:
@@ -109,16 +124,34 @@ class Intrinsics:
         )
 
     def straight(self) -> Intrinsics:
-        """Of the picture after its distortion was taken away."""
-        return replace(self, distortion=STRAIGHT)
+        """Of the picture after its distortion was taken away.
+
+        A fisheye's has the same scale in the middle, and reaches to each side as far as the photo does, at most
+        `STRAIGHT_HALF_DEG` from the axis.
+        """
+        if self.fisheye is None:
+            return replace(self, distortion=STRAIGHT)
+        across, down = (self.cx_px, self.width_px - self.cx_px), (self.cy_px, self.height_px - self.cy_px)
+        extents = [*((extent, self.fx_px) for extent in across), *((extent, self.fy_px) for extent in down)]
+        most = math.radians(STRAIGHT_HALF_DEG)
+        angles = self._fisheye_angles(np.array([abs(extent) / focal for extent, focal in extents]))
+        left, right, top, bottom = (
+            math.copysign(focal * math.tan(min(angle, most)), extent)
+            for angle, (extent, focal) in zip(angles.tolist(), extents, strict=True)
+        )
+        width, height = max(1, round(left + right)), max(1, round(top + bottom))
+        return Intrinsics(width, height, self.fx_px, self.fy_px, left, top)
 
     def pixels(self, points_cam: Array) -> Array:
         """Project points, shape (n, 3), in camera axes to pixels, shape (n, 2); NaN for points not in front.
 
         NaN, too, for points outside the field of view widened by half where the picture is distorted: the polynomial
-        was fitted inside, and folds points back into the picture from far outside.
+        was fitted inside, and folds points back into the picture from far outside. A fisheye sees points behind the
+        camera's plane, too, up to where its polynomial folds.
         """
         points = np.atleast_2d(np.asarray(points_cam, float))
+        if self.fisheye is not None:
+            return self._fisheye_pixels(points)
         z = points[:, 2]
         with np.errstate(divide="ignore", invalid="ignore"):
             x, y = points[:, 0] / z, points[:, 1] / z
@@ -137,9 +170,18 @@ class Intrinsics:
             return np.asarray(((pixels >= 0.0) & (pixels <= (self.width_px, self.height_px))).all(axis=1))
 
     def rays(self, pixels: Array) -> Array:
-        """Directions, shape (n, 3), camera axes, z = 1, that fall on pixels, shape (n, 2)."""
+        """Directions, shape (n, 3), camera axes, that fall on pixels, shape (n, 2).
+
+        They have z = 1; those of a fisheye, which may look backwards, have the length 1, and pixels farther out than
+        its polynomial reaches show what is seen where it ends.
+        """
         points = np.atleast_2d(np.asarray(pixels, float))
         x, y = (points[:, 0] - self.cx_px) / self.fx_px, (points[:, 1] - self.cy_px) / self.fy_px
+        if self.fisheye is not None:
+            radius = np.hypot(x, y)
+            angles = self._fisheye_angles(radius)
+            across = np.divide(np.sin(angles), radius, out=np.ones_like(radius), where=radius > 0.0)
+            return np.column_stack([x * across, y * across, np.cos(angles)])
         if not self.is_straight and len(points):  # OpenCV gives nothing back for no points
             criteria = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, UNDISTORT_STEPS, UNDISTORT_TOLERANCE)
             seen = np.column_stack([x, y]).reshape(-1, 1, 2)
@@ -157,6 +199,41 @@ class Intrinsics:
             x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
             y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y,
         )
+
+    def _fisheye_pixels(self, points_cam: Array) -> Array:
+        x, y, z = points_cam.T
+        across = np.hypot(x, y)
+        angles = np.arctan2(across, z)
+        radii = np.where(angles < self.fisheye_reach_rad, self._fisheye_radii(angles)[0], np.nan)
+        # Along the axis, where there is no direction across, both are 0.
+        share = np.divide(radii, across, out=np.where(z > 0.0, 0.0, np.nan), where=across > 0.0)
+        return np.column_stack([self.fx_px * share * x + self.cx_px, self.fy_px * share * y + self.cy_px])
+
+    @property
+    def fisheye_reach_rad(self) -> float:
+        """Angle from the axis up to which a fisheye's polynomial grows; pi where it does not fold."""
+        angles = np.linspace(0.0, math.pi, FISHEYE_ANGLES)
+        falls = np.flatnonzero(self._fisheye_radii(angles)[1] <= 0.0)
+        return float(angles[max(0, falls[0] - 1)]) if len(falls) else math.pi
+
+    def _fisheye_radii(self, angles: Array) -> tuple[Array, Array]:
+        """Distances from the principal point, in focal lengths, of what is seen at angles, and their derivatives."""
+        k1, k2, k3, k4 = self.fisheye or (0.0, 0.0, 0.0, 0.0)
+        t2 = angles * angles
+        radii = angles * (1.0 + t2 * (k1 + t2 * (k2 + t2 * (k3 + t2 * k4))))
+        return radii, 1.0 + t2 * (3.0 * k1 + t2 * (5.0 * k2 + t2 * (7.0 * k3 + t2 * 9.0 * k4)))
+
+    def _fisheye_angles(self, radii: Array) -> Array:
+        """The inverse, up to where the polynomial folds."""
+        reach = self.fisheye_reach_rad
+        table = np.linspace(0.0, reach, FISHEYE_ANGLES)
+        known = self._fisheye_radii(table)[0]
+        radii = np.minimum(radii, known[-1])
+        angles = np.interp(radii, known, table)
+        for _ in range(FISHEYE_STEPS):
+            found, slopes = self._fisheye_radii(angles)
+            angles = np.clip(angles - (found - radii) / np.maximum(slopes, 1e-6), 0.0, reach)
+        return np.asarray(angles)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -266,13 +343,22 @@ def cam_from_enu(heading_deg: float, pitch_deg: float, roll_deg: float = 0.0) ->
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PosedPhoto:
-    """A photo with its camera. `name` is unique in its set: the path below the folder of photos, with slashes."""
+    """A photo with its camera.
+
+    Parameters
+    ----------
+    name
+        Unique in its set: the path below the folder of photos, with slashes.
+    mask
+        File of a grey picture that is black where the photo does not count; None where all of it does.
+    """
 
     name: str
     path: Path
     intrinsics: Intrinsics
     pose: Pose
     taken_at: datetime | None = None
+    mask: Path | None = None
 
     def pixels(self, points_enu_m: Array) -> Array:
         """Project points, shape (n, 3), to pixels, shape (n, 2); NaN for points not in front (Eq. 1 of the paper)."""

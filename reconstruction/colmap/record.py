@@ -159,17 +159,30 @@ NUMBERS = {
     "SIMPLE_RADIAL": 2,
     "RADIAL": 3,
     "OPENCV": 4,
+    "OPENCV_FISHEYE": 5,
     "FULL_OPENCV": 6,
+    "SIMPLE_RADIAL_FISHEYE": 8,
+    "RADIAL_FISHEYE": 9,
 }
 """Models that are understood, with their numbers in binary files."""
 
-N_PARAMETERS = {"SIMPLE_PINHOLE": 3, "PINHOLE": 4, "SIMPLE_RADIAL": 4, "RADIAL": 5, "OPENCV": 8, "FULL_OPENCV": 12}
+N_PARAMETERS = {
+    "SIMPLE_PINHOLE": 3,
+    "PINHOLE": 4,
+    "SIMPLE_RADIAL": 4,
+    "RADIAL": 5,
+    "OPENCV": 8,
+    "OPENCV_FISHEYE": 8,
+    "FULL_OPENCV": 12,
+    "SIMPLE_RADIAL_FISHEYE": 4,
+    "RADIAL_FISHEYE": 5,
+}
+
+FISHEYE = "_FISHEYE"
+"""Ending of the names of models with distortion by the angle from the axis."""
 
 OTHERS = {
-    5: "OPENCV_FISHEYE",
     7: "FOV",
-    8: "SIMPLE_RADIAL_FISHEYE",
-    9: "RADIAL_FISHEYE",
     10: "THIN_PRISM_FISHEYE",
     11: "RAD_TAN_THIN_PRISM_FISHEYE",
 }
@@ -238,9 +251,14 @@ def intrinsics_of(camera: ColmapCamera) -> Intrinsics:
     """
     check_camera(camera, "COLMAP model")
     p = (*camera.parameters, *[0.0] * 12)  # parameters that a model does not have are 0
-    width, height = camera.width_px, camera.height_px
+    width, height, is_fisheye = camera.width_px, camera.height_px, camera.model.endswith(FISHEYE)
     if camera.model.startswith(("SIMPLE", "RADIAL")):  # f, cx, cy and up to two of k
-        return Intrinsics(width, height, p[0], p[0], p[1], p[2], (p[3], p[4], 0.0, 0.0, 0.0))
+        pinhole = Intrinsics(width, height, p[0], p[0], p[1], p[2])
+        if is_fisheye:
+            return replace(pinhole, fisheye=(p[3], p[4], 0.0, 0.0))
+        return replace(pinhole, distortion=(p[3], p[4], 0.0, 0.0, 0.0))
+    if is_fisheye:
+        return Intrinsics(width, height, p[0], p[1], p[2], p[3], fisheye=(p[4], p[5], p[6], p[7]))
     distortion = p[4], p[5], p[6], p[7], p[8]
     intrinsics = Intrinsics(width, height, p[0], p[1], p[2], p[3], distortion)
     return _followed(intrinsics, p[9:12], camera.id) if any(p[9:12]) else intrinsics
@@ -252,6 +270,8 @@ def camera_of(intrinsics: Intrinsics, camera_id: int) -> ColmapCamera:
     pinhole = (i.fx_px, i.fy_px, i.cx_px, i.cy_px)
     if i.is_straight:
         return ColmapCamera(camera_id, "PINHOLE", i.width_px, i.height_px, pinhole)
+    if i.fisheye is not None:
+        return ColmapCamera(camera_id, "OPENCV_FISHEYE", i.width_px, i.height_px, (*pinhole, *i.fisheye))
     if i.distortion[4] == 0.0:
         return ColmapCamera(camera_id, "OPENCV", i.width_px, i.height_px, (*pinhole, *i.distortion[:4]))
     parameters = (*pinhole, *i.distortion, 0.0, 0.0, 0.0)

@@ -221,19 +221,62 @@ class Layers:
     normals_enu: NDArray[np.float32]
 
 
-def straightened(photo: PosedPhoto, image: Image) -> tuple[PosedPhoto, Image]:
-    """Photo and picture with the lens's distortion taken away, by the same camera matrix and size.
+def straightened(
+    photo: PosedPhoto, image: Image, valid: NDArray[np.bool_] | None = None
+) -> tuple[PosedPhoto, Image, NDArray[np.bool_]]:
+    """Photo and picture with the lens's distortion taken away, and which of its pixels are valid, shape (h, w).
 
-    Where the straight picture reaches beyond the photo it is black.
+    Those are that are made of valid pixels of the photo alone; all of these are where `valid` is None.
     """
     lens = photo.intrinsics
-    x, y = straightening_maps(lens)
-    picture = cv2.remap(image, x, y, cv2.INTER_CUBIC, borderMode=cv2.BORDER_CONSTANT, borderValue=0)
-    return replace(photo, intrinsics=lens.straight()), np.asarray(picture, np.uint8)
+    maps = straightening_maps(lens)
+    picture = cv2.remap(image, *maps, cv2.INTER_CUBIC, borderMode=cv2.BORDER_CONSTANT, borderValue=0)
+    straight = replace(photo, intrinsics=lens.straight())
+    return straight, np.asarray(picture, np.uint8), straightened_mask(maps, image.shape[:2], valid)
 
 
-def straightening_maps(lens: Intrinsics) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+def straightened_mask(maps: Maps, shape: tuple[int, ...], valid: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
+    """Pixels of a straight picture that cubic interpolation makes of valid ones alone.
+
+    Parameters
+    ----------
+    maps
+        Of `straightening_maps`.
+    shape
+        Rows and columns of the photo.
+    valid
+        Which of its pixels are, of that shape; None for all.
+    """
+    x, y = maps
+    inside = (x >= 1.0) & (x < shape[1] - 2.0) & (y >= 1.0) & (y < shape[0] - 2.0)
+    if valid is None:
+        return np.asarray(inside)
+    whole = cv2.erode(valid.astype(np.uint8), np.ones((CUBIC_PX, CUBIC_PX), np.uint8))
+    return np.asarray(inside & (cv2.remap(whole, x, y, cv2.INTER_NEAREST, borderMode=cv2.BORDER_CONSTANT) > 0))
+
+
+CUBIC_PX = 5
+"""Side of a square around the nearest pixel that holds the four by four which cubic interpolation takes."""
+
+NOWHERE_PX = -10.0
+"""Column and row of what a fisheye does not show: beside the picture, whatever interpolation takes."""
+
+Maps = tuple[NDArray[np.float32], NDArray[np.float32]]
+
+
+def straightening_maps(lens: Intrinsics) -> Maps:
     """Column and row in the photo of each pixel of the straight picture, shape (h, w), as `cv2.remap` counts them."""
+    straight = lens.straight()
+    if lens.fisheye is not None:
+        maps = np.empty((2, straight.height_px, straight.width_px), np.float32)
+        for start in range(0, straight.height_px, ROWS):
+            part = maps[:, start : start + ROWS]
+            rows, columns = np.indices(part.shape[1:]) + 0.5
+            places = np.column_stack([columns.ravel(), start + rows.ravel()])
+            part[:] = (lens.pixels(straight.rays(places)) - 0.5).T.reshape(part.shape)
+        # Where the lens shows nothing.
+        np.nan_to_num(maps, copy=False, nan=NOWHERE_PX)
+        return maps[0], maps[1]
     shifted = lens.matrix.copy()
     shifted[:2, 2] -= 0.5
     size = lens.width_px, lens.height_px

@@ -6,6 +6,7 @@ masks/ and normals/ are ours (docs/reference/file-formats.md).
 
 from __future__ import annotations
 
+import math
 import os
 import shutil
 from collections.abc import Sequence
@@ -27,12 +28,19 @@ from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import join, write_mesh
 from planning.geo.ray_casting import RayCaster
 from planning.site.records import SiteModel, panel_corners
-from reconstruction.base.cameras import Intrinsics, PosedPhoto
+from reconstruction.base.cameras import STRAIGHT_HALF_DEG, Intrinsics, PosedPhoto
 from reconstruction.colmap.georeference import Similarity
 from reconstruction.dataset.layers import IN_FRONT_M, Scene, draw_layers, facing, normals_to_16_bit, straightened
-from reconstruction.dataset.records import ColouredPoints, start_points, write_records
+from reconstruction.dataset.records import VALID, ColouredPoints, start_points, write_records
 from reconstruction.dataset.refined_mesh import RefineParameters, grown_corners, refine_mesh
-from reconstruction.photos.decode import PICTURE_FILE, check_whole, decoded, is_named_rightly
+from reconstruction.photos.decode import (
+    PICTURE_FILE,
+    check_whole,
+    decoded,
+    is_named_rightly,
+    read_mask,
+    resized_mask,
+)
 
 Array = NDArray[np.float64]
 
@@ -54,7 +62,7 @@ class LensDistortion:
     tolerance: float = 0.3
 
     def assess(self, scene: Sequence[PosedPhoto]) -> Assessment:
-        """How far the distortion moves a pixel at most."""
+        """How far the distortion moves a pixel at most, of those that stay in the picture."""
         lenses = {photo.intrinsics for photo in scene}
         size = max((most_moved_px(lens) for lens in lenses), default=0.0)
         megapixels = sum(photo.intrinsics.width_px * photo.intrinsics.height_px for photo in scene) / 1e6
@@ -68,8 +76,12 @@ def most_moved_px(lens: Intrinsics) -> float:
         return 0.0
     x, y = np.meshgrid(np.linspace(0.0, lens.width_px, GRID), np.linspace(0.0, lens.height_px, GRID))
     pixels = np.column_stack([x.ravel(), y.ravel()])
-    straight = lens.straight().pixels(lens.rays(pixels))
-    return float(np.linalg.norm(straight - pixels, axis=1).max())
+    straight = lens.straight()
+    off = straight.pixels(lens.rays(pixels)) - pixels
+    if lens.fisheye is not None:
+        stays = straight.is_seen(lens.rays(pixels))
+        off = off[stays] - (straight.cx_px - lens.cx_px, straight.cy_px - lens.cy_px)
+    return float(np.linalg.norm(off, axis=1).max(initial=0.0))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -207,6 +219,10 @@ def prepare(
     parameters = parameters or PrepareParameters()
     if not photos:
         raise InputError(say("there are no photos with a pose to prepare"))
+    if parameters.lens_distortion == "off" and any(photo.intrinsics.fisheye is not None for photo in photos):
+        raise InputError(
+            say("lens distortion is off, but there are photos of a fisheye, which can be learned from straight only")
+        )
     is_new_folder = _empty(folder)
     try:
         prepared = _prepare(
@@ -258,7 +274,29 @@ def _prepare(
         raise InputError(say("none of the {} photos can be used; the first: {}", len(photos), findings[0].message))
     monitor.report(say("writing cameras and points"), 0, 1)
     write_records(folder, kept, model.site, points, (bent, hidden), parameters.normal_step, enu_from_model)
-    return PreparedData(folder, tuple(kept), (bent, hidden), tuple(findings))
+    return PreparedData(folder, tuple(kept), (bent, hidden), (*_cut_off(photos), *findings))
+
+
+def _cut_off(photos: Sequence[PosedPhoto]) -> tuple[Finding, ...]:
+    """That fisheyes show more than straight pictures are made of."""
+    wide = [photo for photo in photos if is_cut_off(photo.intrinsics)]
+    if not wide:
+        return ()
+    text = say(
+        "{} of {} photos are of a fisheye that shows more than can be told straight: what lies farther than {:.0f} "
+        "degrees from the optical axis along their rows or columns is left out",
+        *(len(wide), len(photos), STRAIGHT_HALF_DEG),
+    )
+    return (Finding(Severity.NOTE, "fisheye-cut-off", text, "", float(len(wide)), 0.0, "photos"),)
+
+
+def is_cut_off(lens: Intrinsics) -> bool:
+    """Whether the middle of a side of a fisheye's picture is not in the straight one."""
+    if lens.fisheye is None:
+        return False
+    width, height = lens.width_px, lens.height_px
+    sides = np.array([(0.0, lens.cy_px), (width, lens.cy_px), (lens.cx_px, 0.0), (lens.cx_px, height)])
+    return bool((lens.rays(sides)[:, 2] < math.cos(math.radians(STRAIGHT_HALF_DEG))).any())
 
 
 def _photo(
@@ -288,24 +326,59 @@ def _photo(
             "the picture has {} pixels, its camera {} x {}; it was left out", found, lens.width_px, lens.height_px
         )
         return Finding(Severity.WARNING, "photo-size", text, photo.name)
-    straight = replace(photo, intrinsics=lens.straight())
+    try:
+        valid = None if photo.mask is None else mask_of(photo)
+    except InputError as error:
+        text = say("its mask cannot be used ({}); it was left out", error)
+        return Finding(Severity.WARNING, "photo-mask", text, photo.name)
+    straight = replace(photo, intrinsics=lens.straight(), mask=None)
     is_changed = is_turned or not is_named_rightly(stored, photo.path)
     target = folder / "images" / photo.name
     target.parent.mkdir(parents=True, exist_ok=True)
     if straighten and not lens.is_straight:
-        straight, content = straightened(photo, content)
+        straight, content, valid = straightened(replace(photo, mask=None), content, valid)
         is_changed = True
     if is_changed:
         _write(target, content)
     else:
         _same_file(photo.path, target)
     layers = draw_layers(straight, scene, parameters.normal_step)
-    _write(layer_path(folder, "panels", photo.name), layers.panels)
-    _write(layer_path(folder, "masks", photo.name), layers.facade.astype(np.uint8) * 255)
+    panels, facade = layers.panels, layers.facade
+    mask: Path | None = None
+    if valid is not None and not valid.all():
+        panels, facade = panels * valid, facade & valid
+        mask = layer_path(folder, VALID, photo.name)
+        _write(mask, valid.astype(np.uint8) * 255)
+    _write(layer_path(folder, "panels", photo.name), panels)
+    _write(layer_path(folder, "masks", photo.name), facade.astype(np.uint8) * 255)
     normals = normals_to_16_bit(layers.normals_enu)
     _write(layer_path(folder, "normals", photo.name), np.ascontiguousarray(normals[..., ::-1]))
-    points.add(straight, content, mesh)
-    return replace(straight, path=target)
+    points.add(straight, content, mesh, valid)
+    return replace(straight, path=target, mask=mask)
+
+
+def mask_of(photo: PosedPhoto) -> NDArray[np.bool_]:
+    """Which pixels of a photo count by its mask, of the size of its camera, shape (h, w).
+
+    Raises
+    ------
+    InputError
+        The mask cannot be read, has another shape than the photo, or leaves nothing of it.
+    """
+    assert photo.mask is not None
+    mask, lens = read_mask(photo.mask), photo.intrinsics
+    height, width = mask.shape
+    if abs(height - lens.height_px * width / lens.width_px) > 1.0:
+        raise InputError(
+            say(
+                "has {} x {} pixels, and the photo's camera {} x {}",
+                *(width, height, lens.width_px, lens.height_px),
+                place=photo.mask,
+            )
+        )
+    if not mask.any():
+        raise InputError(say("is black everywhere", place=photo.mask))
+    return resized_mask(mask, lens.width_px, lens.height_px)
 
 
 def layer_path(folder: Path, layer: str, name: str) -> Path:
@@ -360,7 +433,7 @@ def _empty(folder: Path) -> bool:
 
 def _clear(folder: Path) -> None:
     """Remove what was written of a data set that did not come to its end."""
-    names = {part.split("/")[0] for part in FOLDERS} | {"transforms.json", "refined.ply", "points.ply", DATA_SET}
+    names = {part.split("/")[0] for part in FOLDERS} | {VALID, "transforms.json", "refined.ply", "points.ply", DATA_SET}
     for path in [*(folder / name for name in sorted(names)), *folder.glob(".*.????????.part*"), folder / UNFINISHED]:
         _remove(path)
 

@@ -17,14 +17,13 @@ from numpy.typing import NDArray
 from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.files import read_input_file
-from planning.base.findings import Finding, Severity
 from planning.base.json_file import read_json, to_record, write_atomically
 from planning.base.messages import about, say
 from planning.geo.mesh import TriangleMesh
 from planning.geo.ray_casting import RayCaster
 from planning.photos.folder import OTHER_PICTURES, SUFFIXES
 from planning.site.records import Site
-from reconstruction.base.cameras import Intrinsics, PosedPhoto
+from reconstruction.base.cameras import STRAIGHT, Intrinsics, PosedPhoto
 from reconstruction.colmap.folder import write_model
 from reconstruction.colmap.georeference import Similarity, model_of
 from reconstruction.colmap.record import (
@@ -60,8 +59,10 @@ class ColouredPoints:
         self._counts = np.zeros(len(points_enu_m), np.int64)
         self._lock = threading.Lock()
 
-    def add(self, photo: PosedPhoto, image: NDArray[np.uint8], mesh: RayCaster) -> None:
-        """Take in a straight photo's picture, shape (h, w, 3), blue, green, red."""
+    def add(
+        self, photo: PosedPhoto, image: NDArray[np.uint8], mesh: RayCaster, valid: NDArray[np.bool_] | None = None
+    ) -> None:
+        """Take in a straight photo's picture, shape (h, w, 3), blue, green, red, of its valid pixels, shape (h, w)."""
         seen = np.flatnonzero(photo.sees(self.points_enu_m))
         towards = self.points_enu_m[seen] - photo.pose.position_enu_m
         distance = np.linalg.norm(towards, axis=1)
@@ -72,6 +73,9 @@ class ColouredPoints:
         pixels = photo.pixels(self.points_enu_m[seen]).astype(np.int64)
         x = np.minimum(pixels[:, 0], image.shape[1] - 1)
         y = np.minimum(pixels[:, 1], image.shape[0] - 1)
+        if valid is not None:
+            told = valid[y, x]
+            seen, x, y = seen[told], x[told], y[told]
         colours = image[y, x, ::-1].astype(float)
         with self._lock:
             self._sums[seen] += colours
@@ -126,6 +130,9 @@ def points_ahead(photos: Sequence[PosedPhoto], distance_m: float, n: int, seed: 
 
 DATASET_FORMAT = "reflight-dataset/1"
 
+VALID = "valid"
+"""Layer of photos of which not all pixels count, black where they do not."""
+
 OPENGL_FROM_CAM = np.diag([1.0, -1.0, -1.0])
 """nerfstudio's camera axes are x right, y up, z backwards."""
 
@@ -160,8 +167,8 @@ def write_records(
 def transforms(photos: Sequence[PosedPhoto]) -> dict[str, Any]:
     """Content of nerfstudio's transforms.json (docs.nerf.studio, "Data conventions").
 
-    Facade masks do not stand under its `mask_path`, whose black pixels are not trained on. Where a picture is not
-    straight, the camera model is its OPENCV.
+    Its `mask_path`, whose black pixels are not trained on, names the valid pixels, not the facade. Where a picture is
+    not straight, the camera model is its OPENCV.
     """
     is_straight = all(photo.intrinsics.is_straight for photo in photos)
     frames = []
@@ -181,6 +188,7 @@ def transforms(photos: Sequence[PosedPhoto]) -> dict[str, Any]:
                 "fl_y": lens.fy_px,
                 "cx": lens.cx_px,
                 "cy": lens.cy_px,
+                **({} if photo.mask is None else {"mask_path": f"{VALID}/{photo.name}.png"}),
                 **({} if is_straight else dict(zip(("k1", "k2", "p1", "p2", "k3"), lens.distortion, strict=True))),
                 "transform_matrix": pose.tolist(),
             }
@@ -254,8 +262,8 @@ def _json(content: dict[str, Any]) -> bytes:
 TRANSFORMS_FILES = ("transforms.json", "transforms_train.json")
 """Names of such files, the usual first."""
 
-PERSPECTIVE = ("PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV")
-"""Camera models that Brown's distortion tells."""
+FISHEYE, PERSPECTIVE = "OPENCV_FISHEYE", ("PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV")
+"""Camera models: a fisheye's, and those that Brown's distortion tells."""
 
 MOST_SHEAR = 1e-2
 """By which axes of a pose may miss unit length and right angles: files are rounded."""
@@ -296,10 +304,10 @@ class _Transforms(_Lens):
     ply_file_path: str | None = None
 
 
-def read_transforms(path: Path) -> tuple[ColmapModel, Path | None, tuple[Finding, ...]]:
-    """Cameras and images of a `transforms.json`, without points; the file of points that it names; what is not used.
+def read_transforms(path: Path) -> tuple[ColmapModel, Path | None, dict[str, Path]]:
+    """Cameras and images of a `transforms.json`, without points; the file of points that it names; masks of images.
 
-    Images' names are absolute paths of their files. The world is the file's own.
+    Images' names are absolute paths of their files, and masks go by them. The world is the file's own.
 
     Raises
     ------
@@ -326,22 +334,26 @@ def read_transforms(path: Path) -> tuple[ColmapModel, Path | None, tuple[Finding
     if len(set(names)) < len(names):
         raise InputError(say("names {} pictures twice", len(names) - len(set(names)), place=path))
     model = ColmapModel({number: replace(camera, id=number) for camera, number in cameras.items()}, images)
-    n_masked = sum(frame.mask_path is not None for frame in content.frames)
-    text = say(
-        "{} of {} frames have masks, which are not used: all of a photo is learned", n_masked, len(content.frames)
-    )
-    masks = Finding(Severity.WARNING, "masks-not-used", text, str(path), float(n_masked), 0.0, "photos")
+    masks = {
+        image.name: _normal(path.parent, frame.mask_path)
+        for image, frame in zip(images.values(), content.frames, strict=True)
+        if frame.mask_path is not None
+    }
     points = None if content.ply_file_path is None else path.parent / content.ply_file_path
-    return model, points, (masks,) if n_masked else ()
+    return model, points, masks
 
 
 def _picture_of(folder: Path, name: str) -> Path:
     """The file of a frame, an absolute path; names of rendered pictures have no ending."""
-    picture = Path(os.path.normpath((folder / name.replace("\\", "/")).absolute()))
+    picture = _normal(folder, name)
     if picture.suffix.lower() in SUFFIXES + OTHER_PICTURES or picture.is_file():
         return picture
     endings = (".png", *SUFFIXES, *OTHER_PICTURES)
     return next((found for end in endings if (found := Path(f"{picture}{end}")).is_file()), picture)
+
+
+def _normal(folder: Path, name: str) -> Path:
+    return Path(os.path.normpath((folder / name.replace("\\", "/")).absolute()))
 
 
 def _pose_of(frame: _Frame, place: str) -> tuple[Array, Array]:
@@ -365,18 +377,18 @@ def _intrinsics(content: _Transforms, frame: _Frame, picture: Path, place: str) 
         return float(own if own is not None else common if common is not None else otherwise)
 
     model = frame.camera_model or content.camera_model or "OPENCV"
-    is_fisheye = frame.is_fisheye or content.is_fisheye
-    if model not in PERSPECTIVE or is_fisheye:
+    is_fisheye = frame.is_fisheye or content.is_fisheye or model == FISHEYE
+    if not is_fisheye and model not in PERSPECTIVE:
         raise InputError(
             say(
                 "the camera model {} is not supported; expected one of {}; undistort the pictures first, such as with "
                 "COLMAP's image_undistorter, whose model 'prepare --colmap' reads",
-                "OPENCV_FISHEYE" if is_fisheye else model,
-                ", ".join(PERSPECTIVE),
+                model,
+                ", ".join((*PERSPECTIVE, FISHEYE)),
                 place=place,
             )
         )
-    if number("k4"):
+    if number("k4") and not is_fisheye:
         raise InputError(say("k4: expected 0, as only k1, k2, k3, p1 and p2 are understood", place=place))
     width, height = number("w"), number("h")
     if not (width and height):
@@ -384,17 +396,20 @@ def _intrinsics(content: _Transforms, frame: _Frame, picture: Path, place: str) 
         if size is None:
             raise InputError(say("cannot be decoded as a picture", place=picture))
         width, height = size
-    half_x, half_y = 0.5 * number("camera_angle_x"), 0.5 * number("camera_angle_y")
+    # A fisheye's field of view says its focal length with its distortion only, and is not written by anybody.
+    half_x, half_y = (0.0 if is_fisheye else 0.5 * number(f"camera_angle_{axis}") for axis in "xy")
     fx = number("fl_x") or (0.5 * width / math.tan(half_x) if 0.0 < half_x < 0.5 * math.pi else 0.0)
     # Fields of view of both axes are rounded on their own, and pixels are square.
     fy = number("fl_y") or fx or (0.5 * height / math.tan(half_y) if 0.0 < half_y < 0.5 * math.pi else 0.0)
     if not fy:
         raise InputError(say("says no focal length: expected fl_x, or camera_angle_x", place=place))
     distortion = number("k1"), number("k2"), number("p1"), number("p2"), number("k3")
+    fisheye = number("k1"), number("k2"), number("k3"), number("k4")
     try:
         return Intrinsics(
             *(round(width), round(height), fx or fy, fy),
-            *(number("cx", 0.5 * width), number("cy", 0.5 * height), distortion),
+            *(number("cx", 0.5 * width), number("cy", 0.5 * height)),
+            *((STRAIGHT, fisheye) if is_fisheye else (distortion, None)),
         )
     except ValueError as error:
         raise InputError(about(place, error)) from error

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import cv2
@@ -19,8 +19,8 @@ from reconstruction.base.cameras import PosedPhoto
 from reconstruction.colmap.folder import model_within, read_model
 from reconstruction.colmap.georeference import Similarity, posed_photos
 from reconstruction.dataset.layers import unit_normals
-from reconstruction.dataset.prepare import layer_path
-from reconstruction.dataset.records import DATASET_FORMAT
+from reconstruction.dataset.prepare import layer_path, mask_of
+from reconstruction.dataset.records import DATASET_FORMAT, VALID
 from reconstruction.photos.decode import PICTURE_FILE, decoded
 
 Array = NDArray[np.float64]
@@ -103,12 +103,12 @@ class PhotoSet:
         return tuple(photo for photo in self.photos if photo.name in names)
 
     def picture(self, photo: PosedPhoto) -> NDArray[np.uint8]:
-        """Red, green and blue, shape (h, w, 3).
+        """Red, green and blue, shape (h, w, 3); black where the photo's mask is.
 
         Raises
         ------
         InputError
-            The file is missing, damaged, or of another size than its camera.
+            The file, or its mask, is missing, damaged, or of another size than its camera.
         """
         return rgb_picture(photo)
 
@@ -183,6 +183,12 @@ def read_photo_set(folder: Path) -> PhotoSet:
     photos = posed_photos(model, Similarity.identity(), folder / "images")
     if not photos:
         raise InputError(say("holds no images; name a folder with photos", place=folder / "sparse" / "0"))
+    if any(photo.intrinsics.fisheye is not None for photo in photos):
+        raise InputError(say("has photos of a fisheye; prepare it again, which makes them straight", place=folder))
+    masks = [layer_path(folder, VALID, photo.name) for photo in photos]
+    photos = tuple(
+        replace(photo, mask=mask) if mask.is_file() else photo for photo, mask in zip(photos, masks, strict=True)
+    )
     run = _run(folder)
     own = {name: capture.exposure for name, capture in run.captures.items()}
     return PhotoSet(folder, photos, PanelPlanes(corners), run.exposure, own)
@@ -247,7 +253,7 @@ def held_out_names(names: Sequence[str], share: float, seed: int) -> tuple[str, 
 
 
 def rgb_picture(photo: PosedPhoto, flags: int = cv2.IMREAD_COLOR) -> NDArray[np.uint8]:
-    """Red, green and blue of a photo as large as its camera, shape (h, w, 3); errors as `PhotoSet.picture`.
+    """Red, green and blue of a photo as large as its camera, shape (h, w, 3); as `PhotoSet.picture`.
 
     Parameters
     ----------
@@ -255,7 +261,10 @@ def rgb_picture(photo: PosedPhoto, flags: int = cv2.IMREAD_COLOR) -> NDArray[np.
         Of OpenCV, of a picture decoded at a part of its size, too; as it lies in the file.
     """
     bgr = _image(photo.path, flags | cv2.IMREAD_IGNORE_ORIENTATION, photo)
-    return np.ascontiguousarray(bgr[..., ::-1], np.uint8)
+    rgb = np.ascontiguousarray(bgr[..., ::-1], np.uint8)
+    if photo.mask is not None:  # nothing that is made of pictures depends on what lies there
+        rgb[~mask_of(photo)] = 0
+    return rgb
 
 
 def _image(path: Path, flags: int, photo: PosedPhoto) -> NDArray[np.uint8] | NDArray[np.uint16]:

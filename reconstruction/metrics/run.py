@@ -29,7 +29,7 @@ from reconstruction.metrics.metrics import (
     summarise,
 )
 from reconstruction.metrics.overlaps import found_index, found_region, pixel_overlaps
-from reconstruction.metrics.pictures import pictures_in, read_labels, write_picture
+from reconstruction.metrics.pictures import pictures_in, write_picture
 from reconstruction.metrics.sets import PhotoSet, ScoredPhoto
 from reconstruction.panels.rectify.fit import ViewKind, decide_view, drawn_view
 from reconstruction.panels.rectify.surface import Rectification
@@ -39,6 +39,7 @@ from reconstruction.panels.search.record import Segmentation
 from reconstruction.panels.search.segment import segment_views
 from reconstruction.panels.segment import segment_image
 from reconstruction.panels.solving.register import registered
+from reconstruction.photos.decode import read_mask, resized_mask
 
 Mask = NDArray[np.bool_]
 
@@ -47,9 +48,6 @@ Mask = NDArray[np.bool_]
 #
 # Made for EBLNet, GhostingNet and GlassSemNet, whose programs write such folders; nothing here depends on which it
 # was.
-
-THRESHOLD = 0.5
-"""Probability from which a pixel is glass."""
 
 NAMES_IN_MESSAGE = 5
 
@@ -75,12 +73,7 @@ class MaskFolder:
             raise InputError(
                 say("expected a mask for the photo '{}', found none of that name", name, place=self.folder)
             )
-        is_glass = _is_glass(self.paths[name])
-        if is_glass.shape == (height_px, width_px):
-            return is_glass
-        size = (width_px, height_px)
-        resized = cv2.resize(is_glass.astype(np.uint8), size, interpolation=cv2.INTER_NEAREST_EXACT)
-        return np.asarray(resized, bool)
+        return resized_mask(read_mask(self.paths[name]), width_px, height_px)
 
     def check(self, names: Sequence[str]) -> None:
         """See that there is a mask for each of these photos.
@@ -113,19 +106,6 @@ def mask_folder(folder: Path) -> MaskFolder:
         It is no folder or holds no pictures.
     """
     return MaskFolder(folder, pictures_in(folder))
-
-
-def _is_glass(path: Path) -> Mask:
-    """A mask from a picture of 0 and 1, 0 and 255, or probabilities over the whole range of 8 or 16 bit."""
-    values = read_labels(path)
-    if values.ndim == 3:
-        colours = values[..., :3]
-        if (colours != colours[..., :1]).any():
-            raise InputError(say("expected a grey mask, found colours; write glass as white on black", place=path))
-        values = colours[..., 0]
-    highest = int(values.max(initial=0))
-    full = 1 if highest <= 1 else int(np.iinfo(values.dtype).max)
-    return np.asarray(values >= THRESHOLD * full)
 
 
 WORST_KEPT = 3

@@ -169,6 +169,41 @@ def decoded(content: bytes, flags: int, place: str, max_pixels: int = MAX_PIXELS
     return np.asarray(picture)
 
 
+MASK_THRESHOLD = 0.5
+"""Share of white from which a pixel of a mask counts."""
+
+
+def read_mask(path: Path) -> NDArray[np.bool_]:
+    """A mask, shape (h, w), of a picture of 0 and 1, 0 and 255, or shares over the whole range of 8 or 16 bit.
+
+    Raises
+    ------
+    InputError
+        There is none, it cannot be decoded, or it is no mask.
+    """
+    values = decoded(read_input_file(path, PICTURE_FILE), cv2.IMREAD_UNCHANGED, str(path))
+    if values.dtype not in (np.uint8, np.uint16):
+        raise InputError(say("expected an image of 8 or 16 bit, found {}", values.dtype, place=path))
+    if values.ndim == 3:
+        colours = values[..., :3]
+        if (colours != colours[..., :1]).any():
+            raise InputError(
+                say("expected a grey mask, found colours; write what counts as white on black", place=path)
+            )
+        values = colours[..., 0]
+    highest = int(values.max(initial=0))
+    full = 1 if highest <= 1 else int(np.iinfo(values.dtype).max)
+    return np.asarray(values >= MASK_THRESHOLD * full)
+
+
+def resized_mask(mask: NDArray[np.bool_], width_px: int, height_px: int) -> NDArray[np.bool_]:
+    """A mask of a size, each pixel with the value of the nearest one."""
+    if mask.shape == (height_px, width_px):
+        return mask
+    resized = cv2.resize(mask.astype(np.uint8), (width_px, height_px), interpolation=cv2.INTER_NEAREST_EXACT)
+    return np.asarray(resized, bool)
+
+
 def _check_size(size_wh: tuple[int, int], place: str, max_pixels: int) -> None:
     if not 0 < size_wh[0] * size_wh[1] <= max_pixels:
         raise InputError(

@@ -21,6 +21,7 @@ from planning.geo.ray_casting import RayCaster
 from planning.site.records import panel_triangles
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.dataset.layers import unit_normals
+from reconstruction.dataset.prepare import mask_of
 from reconstruction.dataset.records import UNSEEN, ColouredPoints
 from reconstruction.splats.splats import Splats
 from reconstruction.splats.surfels import (
@@ -371,7 +372,9 @@ def _colours(surfels: Surfels, scene: KnownScene, photos: Sequence[PosedPhoto], 
         cloud = ColouredPoints(surfels.points_enu_m[lost])
         caster = RayCaster(scene.mesh)
         for number in np.unique(np.linspace(0, len(photos) - 1, min(COLOUR_PHOTOS, len(photos))).astype(int)):
-            cloud.add(photos[number], pictures(photos[number])[..., ::-1], caster)
+            photo = photos[number]
+            valid = None if photo.mask is None else mask_of(photo)
+            cloud.add(photo, pictures(photo)[..., ::-1], caster, valid)
         colours[lost] = cloud.rgb
     return colours / 255.0
 

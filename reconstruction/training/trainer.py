@@ -74,7 +74,7 @@ def objective(
     truth = display_of(sample)
     found, facade = picture.display, sample.facade
     if sample.shown is not None:
-        # What a straightened photo does not show is as it should be.
+        # What a photo does not show is as it should be.
         found = torch.where(sample.shown[..., None], found, truth)
         facade = facade & sample.shown
     found = no_brighter(found, truth, weights.white)

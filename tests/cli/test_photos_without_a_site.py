@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from planning.photos.folder import read_photos
 from planning.photos.jpeg import kind_of
+from reconstruction.base.cameras import Intrinsics
 from reconstruction.colmap.folder import read_model, write_model
 from reconstruction.colmap.georeference import Similarity, in_enu, model_of
 from reconstruction.colmap.record import ColmapPoints
@@ -19,6 +20,9 @@ from reconstruction.dataset.records import coloured_ply, read_transforms, transf
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.photos.poses import pose_photos
 from reconstruction.splats.surfels import read_points
+from reconstruction.training.config import TrainConfig
+from reconstruction.training.model.score import score_views
+from reconstruction.training.train import train_model
 from tests.reconstruction.light.synthetic_folder import cameras, corners_of, far, panel_numbers, picture
 from tests.services.photo_cases import site_model, write_photos
 
@@ -119,7 +123,6 @@ def test_transforms_json_is_read(reflight, tmp_path, kind):
         cloud = points_on_glass()
         (folder / "sparse_pc.ply").write_bytes(coloured_ply(cloud.xyz, cloud.rgb))
         content["ply_file_path"] = "sparse_pc.ply"
-        content["frames"][0]["mask_path"] = "masks/p00.png"
     else:
         lens = true[0].intrinsics
         frames = [
@@ -131,7 +134,6 @@ def test_transforms_json_is_read(reflight, tmp_path, kind):
     done = prepared(reflight, folder, out=tmp_path / "d")
     assert ("the model has no points" in done.err) == (kind == "rendered")
     assert "was turned" not in done.err
-    assert ("1 of 6 frames have masks, which are not used" in done.err) == (kind == "nerfstudio")
     for mine, theirs in zip(read_photo_set(tmp_path / "d").photos, true, strict=True):
         assert mine.name == theirs.name
         assert np.allclose(mine.pose.position_enu_m, theirs.pose.position_enu_m)
@@ -155,9 +157,9 @@ def test_distorted_frames_of_a_transforms_json_keep_their_numbers(tmp_path):
     }
     path = tmp_path / "transforms.json"
     path.write_text(json.dumps({**common, "frames": [frame]}))
-    model, cloud, findings = read_transforms(path)
+    model, cloud, masks = read_transforms(path)
     (camera,), (image,) = model.cameras.values(), model.images.values()
-    assert (cloud, findings) == (None, ())
+    assert (cloud, masks) == (None, {})
     assert (camera.model, camera.width_px, camera.height_px) == ("OPENCV", 100, 80)
     assert camera.parameters == (90.0, 90.0, 51.0, 40.0, -0.1, 0.0, 0.01, 0.0)
     assert image.name == (tmp_path / "a.png").as_posix()
@@ -167,9 +169,8 @@ def test_distorted_frames_of_a_transforms_json_keep_their_numbers(tmp_path):
 @pytest.mark.parametrize(
     ("changed", "says"),
     [
-        ({"camera_model": "OPENCV_FISHEYE"}, "camera model OPENCV_FISHEYE is not supported"),
         ({"camera_model": "EQUIRECTANGULAR"}, "camera model EQUIRECTANGULAR is not supported"),
-        ({"is_fisheye": True}, "OPENCV_FISHEYE is not supported"),
+        ({"is_fisheye": True, "fl_x": None, "camera_angle_x": 3.0}, "says no focal length"),
         ({"k4": 0.1}, "k4: expected 0"),
         ({"fl_x": 0.0}, "says no focal length"),
         ({"frames": []}, "has no frames"),
@@ -187,6 +188,150 @@ def test_a_transforms_json_that_cannot_be_used_is_refused_in_words(reflight, tmp
     (tmp_path / "transforms.json").write_text(json.dumps(content))
     assert cv2.imwrite(str(tmp_path / "a.png"), np.zeros((8, 8, 3), np.uint8))
     assert says in reflight("prepare", tmp_path, "-o", tmp_path / "d").error
+
+
+# Masks, and lenses of fisheyes.
+
+
+def write_masked(folder, way, rng):
+    """A wall whose photos show noise that differs with `rng` where they are masked, in the way of another program."""
+    photos = write_project(folder, moved=Similarity.identity())
+    height, width = photos[0].intrinsics.height_px, photos[0].intrinsics.width_px
+    names = []
+    for number, photo in enumerate(photos):
+        valid = np.ones((height, width), bool)
+        valid[5:15, 3 + number : 18 + number] = False
+        shown = cv2.imread(str(photo.path))
+        shown[~valid] = rng.integers(0, 256, (int((~valid).sum()), 3))
+        assert cv2.imwrite(str(photo.path), shown)
+        names.append(f"{photo.name if way == 'colmap' else photo.path.stem}.png")
+        (folder / "masks").mkdir(exist_ok=True)
+        assert cv2.imwrite(str(folder / "masks" / names[-1]), valid.astype(np.uint8) * (1 if number == 1 else 255))
+    if way == "nerfstudio":
+        cloud = points_on_glass()
+        (folder / "points.ply").write_bytes(coloured_ply(cloud.xyz, cloud.rgb))
+        content = {**transforms(photos), "ply_file_path": "points.ply"}
+        (folder / "masks").rename(folder / "left_out")
+        for frame, name in zip(content["frames"], names, strict=True):
+            frame["mask_path"] = f"left_out/{name}"
+        (folder / "transforms.json").write_text(json.dumps(content))
+        shutil.rmtree(folder / "sparse")
+    return photos
+
+
+FEW_STEPS = TrainConfig(method="2dgs", iterations=12, n_splats=150, max_splats=200, score_every_s=1e9)
+
+
+def trained_on(folder):
+    """All that a model has learned, and its scores on photos that it was not shown."""
+    trained = train_model(folder, FEW_STEPS)
+    scores = score_views(trained, read_photo_set(folder), trained.record.held_out)
+    state = {name: value.numpy().copy() for name, value in trained.model.state_dict().items()}
+    return state, [(score.whole, score.whole_flip) for score in scores]
+
+
+@pytest.mark.parametrize("way", ["colmap", "stems", "nerfstudio"])
+def test_what_lies_under_masks_changes_neither_the_model_nor_its_scores(reflight, tmp_path, way):
+    found = []
+    for seed in (1, 2):
+        folder = tmp_path / f"wall{seed}"
+        write_masked(folder, way, np.random.default_rng(seed))
+        done = prepared(reflight, folder, out=tmp_path / f"d{seed}")
+        assert "have no mask" not in done.err
+        assert "its mask" not in done.err
+        found.append(trained_on(tmp_path / f"d{seed}"))
+    (one, scores), (other, other_scores) = found
+    assert one.keys() == other.keys()
+    assert all(np.array_equal(one[name], other[name]) for name in one)
+    assert scores == other_scores
+    for seed in (1, 2):
+        shutil.rmtree(tmp_path / f"d{seed}" / "valid")
+    assert (tmp_path / "d1" / "points.ply").read_bytes() == (tmp_path / "d2" / "points.ply").read_bytes()
+    bare, other_bare = (trained_on(tmp_path / f"d{seed}") for seed in (1, 2))
+    assert bare[1] != other_bare[1]
+    assert not np.array_equal(bare[0]["splats.means"], other_bare[0]["splats.means"])
+
+
+def test_masks_that_do_not_fit_are_said_and_a_data_set_of_masked_photos_can_be_prepared_again(reflight, tmp_path):
+    folder = tmp_path / "wall"
+    photos = write_masked(folder, "colmap", np.random.default_rng(0))
+    masks = folder / "masks"
+    half = cv2.imread(str(masks / "p00.png.png"), 0)[::2, ::2]
+    assert cv2.imwrite(str(masks / "p00.png.png"), half)
+    assert cv2.imwrite(str(masks / "p02.png.png"), np.full((20, 40), 255, np.uint8))
+    assert cv2.imwrite(str(masks / "p03.png.png"), np.zeros((30, 40), np.uint8))
+    (masks / "p04.png.png").unlink()
+    done = prepared(reflight, folder, out=tmp_path / "d")
+    assert "4 photos prepared" in done.out
+    assert "its mask cannot be used" in done.err
+    assert "has 40 x 20 pixels, and the photo's camera 40 x 30" in done.err
+    assert "p03.png.png: is black everywhere" in done.err
+    assert "1 of 6 photos have no mask, the first p04.png: all their pixels count" in done.err
+    source = read_photo_set(tmp_path / "d")
+    assert [photo.name for photo in source.photos if photo.mask is None] == ["p04.png"]
+    lost = {photo.name: source.picture(photo).any(axis=2) for photo in source.photos}
+    assert not lost["p00.png"][6:14, 4:17].any()  # twice as large a mask
+    assert lost["p00.png"][16:].all()
+    assert not lost["p01.png"][5:15, 4:19].any()
+    assert lost["p04.png"].all()
+    again = prepared(reflight, tmp_path / "d", out=tmp_path / "again")
+    assert "1 of 4 photos have no mask, the first p04.png" in again.err
+    assert "its mask" not in again.err
+    for photo in read_photo_set(tmp_path / "again").photos:
+        valid = tmp_path / "d" / "valid" / f"{photo.name}.png"
+        assert (photo.mask is None) == (not valid.is_file())
+        assert photo.mask is None or photo.mask.read_bytes() == valid.read_bytes()
+    assert len(photos) == N
+
+
+FISHEYE = Intrinsics(200, 150, 62.0, 61.0, 103.0, 72.0, fisheye=(0.03, -0.01, 0.002, -0.0003))
+"""185 degrees from side to side."""
+
+
+def waves(directions):
+    """Something that can be seen in every direction, shape (n, 3), 0 to 255."""
+    return 127.0 + 100.0 * np.sin(5.0 * directions)
+
+
+@pytest.mark.parametrize("way", ["colmap", "nerfstudio", "instant-ngp"])
+def test_photos_of_a_fisheye_are_made_straight(reflight, tmp_path, way):
+    folder = tmp_path / "dome"
+    true = [replace(photo, intrinsics=FISHEYE, path=photo.path.with_suffix(".png")) for photo in cameras(folder, 3)]
+    (folder / "images").mkdir(parents=True)
+    y, x = np.mgrid[:150, :200] + 0.5
+    for photo in true:
+        _, directions = photo.rays(np.column_stack([x.ravel(), y.ravel()]))
+        assert cv2.imwrite(str(photo.path), waves(directions).round().astype(np.uint8).reshape(150, 200, 3)[..., ::-1])
+    if way == "colmap":
+        write_model(folder / "sparse" / "0", model_of(true), "txt")
+        assert "OPENCV_FISHEYE" in (folder / "sparse" / "0" / "cameras.txt").read_text()
+    else:
+        content = transforms([replace(photo, intrinsics=FISHEYE.straight()) for photo in true])
+        numbers = dict(zip(("k1", "k2", "k3", "k4"), FISHEYE.fisheye, strict=True))
+        sizes = {"w": 200, "h": 150, "fl_x": 62.0, "fl_y": 61.0, "cx": 103.0, "cy": 72.0}
+        model = {"camera_model": "OPENCV_FISHEYE"} if way == "nerfstudio" else {"is_fisheye": True}
+        kept = ("file_path", "transform_matrix")
+        frames = [{name: frame[name] for name in kept} for frame in content["frames"]]
+        (folder / "transforms.json").write_text(json.dumps({**numbers, **sizes, **model, "frames": frames}))
+    moved = prepared(reflight, folder, out=tmp_path / "d")
+    assert "3 of 3 photos are of a fisheye that shows more than can be told straight" in moved.err
+    assert "farther than 55 degrees" in moved.err
+    source = read_photo_set(tmp_path / "d")
+    described = json.loads((tmp_path / "d" / "dataset.json").read_text())
+    turned = np.array(described["enu_from_model"]["rotation"])
+    for photo in source.photos:
+        lens = photo.intrinsics
+        assert lens == FISHEYE.straight()
+        y, x = np.mgrid[: lens.height_px, : lens.width_px] + 0.5
+        _, directions = photo.rays(np.column_stack([x.ravel(), y.ravel()]))
+        wanted = waves(directions @ turned).reshape(lens.height_px, lens.width_px, 3)
+        assert photo.mask is None  # the lens shows more on all sides
+        assert np.abs(source.picture(photo) - wanted).max() < 8.0
+    assert (
+        "lens distortion is off"
+        in reflight("prepare", folder, "-o", tmp_path / "off", "--lens-distortion", "off").error
+    )
+    assert not (tmp_path / "off").exists()
 
 
 def test_what_is_missing_is_said(reflight, tmp_path):

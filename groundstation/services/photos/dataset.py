@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from groundstation.services.photos.poses import (
     photos_with_poses,
     poses_within,
     refined_summary,
+    with_masks,
 )
 from groundstation.services.project.input_files import read_input_site
 from planning.base.errors import InputError
@@ -82,6 +83,7 @@ def prepare_files(
         return PreparedFiles(prepared, (*chosen.findings, *prepared.findings), None)
     model = read_input_site(site)
     better = photos_with_poses(folder, model.site, heights=heights, colmap=colmap, refine=refine, monitor=monitor)
+    better = with_masks(better, folder)
     prepared = prepare(better.photos, model, out, parameters, monitor, better.points_enu_m)
     return PreparedFiles(prepared, (*better.findings, *prepared.findings), better.refined)
 
@@ -113,7 +115,9 @@ def prepare_read(intake: PhotoIntake, model: SiteModel, out: Path, monitor: Moni
     InputError
         There are no photos with a pose, none can be read, or the data set cannot be written.
     """
-    return prepare(intake.photos, model, out, monitor=monitor, cloud=intake.better.points_enu_m)
+    chosen = with_masks(replace(intake.better, photos=intake.photos, findings=()), intake.folder)
+    prepared = prepare(chosen.photos, model, out, monitor=monitor, cloud=chosen.points_enu_m)
+    return replace(prepared, findings=(*chosen.findings, *prepared.findings))
 
 
 def prepared_summary(prepared: PreparedFiles) -> dict[str, Any]:

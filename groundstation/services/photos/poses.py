@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +46,8 @@ from reconstruction.colmap.refined_folder import (
     read_refined,
     write_refined,
 )
-from reconstruction.dataset.records import TRANSFORMS_FILES, points_ahead, read_transforms
+from reconstruction.dataset.prepare import DATA_SET
+from reconstruction.dataset.records import TRANSFORMS_FILES, VALID, points_ahead, read_transforms
 from reconstruction.photos.decode import PICTURE_FILE, picture_size
 from reconstruction.photos.poses import UNPOSED, PhotoSet, name_in, pose_photos, unposed_findings
 
@@ -140,12 +141,15 @@ class ChosenPoses:
         None where nothing was refined.
     points_enu_m
         Of the COLMAP model that the poses are of, shape (n, 3); None where they are of none.
+    masks
+        That the model names, by absolute paths of photos.
     """
 
     photos: tuple[PosedPhoto, ...]
     findings: tuple[Finding, ...] = ()
     refined: RefinedOutcome | None = None
     points_enu_m: NDArray[np.float64] | None = None
+    masks: Mapping[str, Path] = field(default_factory=dict)
 
 
 def photos_with_poses(
@@ -206,13 +210,13 @@ def choose_poses(
         kept = read_refined(colmap, posed.photos)
         if kept.photos_sha256 == fingerprint(posed.photos):
             return _judged(posed.photos, kept, colmap, was_kept=True)
-    model, notes = read_poses(colmap)
+    model, masks = read_poses(colmap)
     found = _fitted(_of_model(named_below(model, folder), read_frame(colmap), posed, folder), posed.sizes_px)
-    return replace(found, findings=(*notes, *found.findings))
+    return replace(found, masks=masks)
 
 
-def read_poses(place: Path) -> tuple[ColmapModel, tuple[Finding, ...]]:
-    """The model of a COLMAP folder, or of nerfstudio's transforms.json and the folder that has one.
+def read_poses(place: Path) -> tuple[ColmapModel, dict[str, Path]]:
+    """The model of a COLMAP folder, or of nerfstudio's transforms.json and the folder that has one; masks of images.
 
     Raises
     ------
@@ -222,10 +226,10 @@ def read_poses(place: Path) -> tuple[ColmapModel, tuple[Finding, ...]]:
     inside = (place / name for name in TRANSFORMS_FILES)
     path = next((each for each in inside if each.is_file()), None) if place.is_dir() else place
     if path is None or (path == place and place.suffix.lower() != ".json"):
-        return read_model(place), ()
-    model, cloud, findings = read_transforms(path)
+        return read_model(place), {}
+    model, cloud, masks = read_transforms(path)
     if cloud is None or not cloud.is_file():
-        return model, findings
+        return model, masks
     from reconstruction.splats.surfels import read_points
 
     xyz, rgb = read_points(cloud)
@@ -233,7 +237,60 @@ def read_poses(place: Path) -> tuple[ColmapModel, tuple[Finding, ...]]:
     points = ColmapPoints(
         np.arange(1, n + 1), xyz, rgb, np.full(n, -1.0), np.zeros(n + 1, np.int64), np.zeros((0, 2), np.int64)
     )
-    return replace(model, points=points), findings
+    return replace(model, points=points), masks
+
+
+# Masks of photos: black where a pixel does not count.
+
+MASKS = "masks"
+"""Folder of masks beside that of the photos, as COLMAP takes them for its features."""
+
+
+def with_masks(chosen: ChosenPoses, folder: Path) -> ChosenPoses:
+    """Photos with the masks that their model names, or that lie beside them as COLMAP has them; and what is missing.
+
+    Parameters
+    ----------
+    folder
+        What the photos' names are paths below; the folder of masks is beside it, or in it.
+    """
+    beside, masks = _folder_of_masks(folder), list[Path | None]()
+    for photo in chosen.photos:
+        names = (str(root / photo.name) for root in (folder.absolute(), folder.resolve()))
+        found = next((chosen.masks[name] for name in names if name in chosen.masks), None)
+        if found is None and beside is not None:
+            places = beside / f"{photo.name}.png", (beside / photo.name).with_suffix(".png")
+            found = next((place for place in places if place.is_file()), None)
+        masks.append(found)
+    lost = [mask for mask in masks if mask is not None and not mask.is_file()]
+    without = [photo.name for photo, mask in zip(chosen.photos, masks, strict=True) if mask is None]
+    findings = list(chosen.findings)
+    if lost:
+        text = say("{} masks are not there, the first {}: all pixels of their photos count", len(lost), lost[0])
+        findings.append(Finding(Severity.WARNING, "masks-missing", text, "", float(len(lost)), 0.0, "photos"))
+    if 0 < len(without) < len(masks):
+        text = say(
+            "{} of {} photos have no mask, the first {}: all their pixels count", len(without), len(masks), without[0]
+        )
+        findings.append(Finding(Severity.NOTE, "photos-unmasked", text, "", float(len(without)), 0.0, "photos"))
+    photos = (
+        replace(photo, mask=None if mask in lost else mask) for photo, mask in zip(chosen.photos, masks, strict=True)
+    )
+    return replace(chosen, photos=tuple(photos), findings=tuple(findings))
+
+
+def _folder_of_masks(folder: Path) -> Path | None:
+    """Of the photos in a folder; None where there is none.
+
+    In a data set of our own the masks of that name are of facades.
+    """
+    whole = folder.absolute()
+    places = (whole.parent, whole) if whole.name in IMAGES else (whole,)
+    for place in places:
+        found = place / (VALID if (place / DATA_SET).is_file() else MASKS)
+        if found.is_dir():
+            return found
+    return None
 
 
 # Photos of which no site is known: a folder with a model of another program.
@@ -297,7 +354,7 @@ def photos_alone(
             "the photos say where they were taken, or make a model of them with 'coarse'",
             place=folder,
         )
-    model, about_model = read_poses(place)
+    model, masks = read_poses(place)
     photos_folder = _folder_of_images(model, folder)
     model = named_below(model, photos_folder)
     read = read_photos(photos_folder, monitor, posed_elsewhere=True)
@@ -313,7 +370,7 @@ def photos_alone(
         found = replace(found, findings=(*notes, *found.findings))
     else:
         found = _of_model(model, frame, posed, photos_folder)
-    found = _fitted(found, posed.sizes_px)
+    found = with_masks(replace(_fitted(found, posed.sizes_px), masks=masks), photos_folder)
     if found.points_enu_m is None:
         found = _with_points_ahead(found)
     origin = None if own is not None or known is None else known.origin
@@ -322,7 +379,7 @@ def photos_alone(
     about_photos = findings_that_hold(posed, found)
     if own is not None:
         about_photos = (*(one for one in about_photos if one.code != UNPOSED), *_not_in_model(posed, model))
-    findings = (*read.findings, *about_model, *about_photos, *found.findings)
+    findings = (*read.findings, *about_photos, *found.findings)
     return PhotosAlone(replace(found, findings=findings), origin, own)
 
 

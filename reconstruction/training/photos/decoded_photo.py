@@ -14,8 +14,8 @@ from planning.base.errors import InputError
 from planning.base.json_file import read_json, to_record
 from planning.base.messages import say
 from reconstruction.base.cameras import Intrinsics, PosedPhoto
-from reconstruction.dataset.layers import normals_from_16_bit, straightening_maps
-from reconstruction.dataset.prepare import layer_path
+from reconstruction.dataset.layers import Maps, normals_from_16_bit, straightened_mask, straightening_maps
+from reconstruction.dataset.prepare import layer_path, mask_of
 from reconstruction.light.photo_set import PhotoSet
 from reconstruction.metrics.pictures import read_labels
 
@@ -24,8 +24,6 @@ FACADE, SHOWN = 1, 2
 
 DECODING_BYTES_PER_PX = 16
 """Of the photo as it is on the disk, at most, while it is decoded: the picture twice, and its layers."""
-
-Maps = tuple[NDArray[np.float32], NDArray[np.float32]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -148,8 +146,8 @@ class _Steps:
 def decode_photo(source: PhotoSet, photo: PosedPhoto, decoding: Decoding, normal_step: int) -> DecodedPhoto:
     """Read a photo and its layers.
 
-    Distorted photos become straight, with the same camera matrix; where they have no pixels for it, `SHOWN` is not set.
-    A pixel's panel, mask and normal are those at its middle.
+    Distorted photos become straight, with the same camera matrix. Where they have no pixels for it, or some of a
+    decoded pixel's do not count, `SHOWN` is not set. A pixel's panel, facade and normal are those at its middle.
 
     Raises
     ------
@@ -166,9 +164,13 @@ def decode_photo(source: PhotoSet, photo: PosedPhoto, decoding: Decoding, normal
     np.not_equal(flags, 0, out=flags)
     flags *= FACADE
     flags |= SHOWN
+    valid = None if photo.mask is None else mask_of(photo)
+    if maps is not None:
+        valid = straightened_mask(maps, (lens.height_px, lens.width_px), valid)
+    if valid is not None:
+        flags[~_whole_blocks(valid, small, reduce)] = 0
     picture = source.picture(photo)
     if maps is not None:
-        flags[~_shown(maps, small, reduce)] = 0
         picture = np.asarray(cv2.remap(picture, *maps, cv2.INTER_CUBIC, borderMode=cv2.BORDER_CONSTANT), np.uint8)
     if reduce > 1:
         # Whole blocks only, so that each pixel is the mean of its own.
@@ -186,12 +188,11 @@ def _kept(layer: NDArray[Any], maps: Maps | None, small: Intrinsics, reduce: int
     return np.ascontiguousarray(layer[half::reduce, half::reduce][: small.height_px, : small.width_px])
 
 
-def _shown(maps: Maps, small: Intrinsics, reduce: int) -> NDArray[np.bool_]:
-    """Where the photo has all pixels that cubic interpolation takes, shape (h, w)."""
-    height, width = maps[0].shape
-    half = reduce // 2
-    x, y = (part[half::reduce, half::reduce][: small.height_px, : small.width_px] for part in maps)
-    return np.asarray((x >= 1.0) & (x < width - 2.0) & (y >= 1.0) & (y < height - 2.0))
+def _whole_blocks(valid: NDArray[np.bool_], small: Intrinsics, reduce: int) -> NDArray[np.bool_]:
+    """Decoded pixels that are the mean of valid ones alone, shape (h, w)."""
+    height, width = small.height_px, small.width_px
+    blocks = valid[: height * reduce, : width * reduce].reshape(height, reduce, width, reduce)
+    return np.asarray(blocks.all(axis=(1, 3)))
 
 
 def _panels(source: PhotoSet, photo: PosedPhoto) -> NDArray[np.uint16]:

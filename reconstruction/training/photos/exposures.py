@@ -26,6 +26,7 @@ from planning.base.progress import QUIET, Monitor
 from planning.geo.mesh import TriangleMesh
 from planning.geo.ray_casting import RayCaster
 from reconstruction.base.cameras import PosedPhoto
+from reconstruction.dataset.prepare import mask_of
 from reconstruction.light.photo_set import PhotoSet
 from reconstruction.splats.surfels import SAME_SURFACE_M, panel_proximity
 
@@ -116,6 +117,9 @@ SMALL_PX = 320
 
 LOOKED_AT = 16
 """Photos, evenly chosen, that tell whether all are to be looked at."""
+
+WHOLE = 0.999
+"""Share of a small pixel that counts by the photo's mask: less is a mixture with black."""
 
 LEAST_POINTS = 20
 """That tell a photo's gain: fewer say nothing, and it is 1."""
@@ -380,6 +384,8 @@ def _logarithms(source: PhotoSet, photo: PosedPhoto, points_enu_m: Array, caster
     y = np.clip((pixels[:, 1] * size[1] / lens.height_px).astype(np.int64), 0, size[1] - 1)
     values = display[y, x]
     is_told = ((values > DARKEST) & (values < BRIGHTEST)).all(axis=1)
+    if photo.mask is not None:
+        is_told &= cv2.resize(mask_of(photo).astype(np.float32), size, interpolation=cv2.INTER_AREA)[y, x] > WHOLE
     if len(source.panels.corners_enu_m):
         panels = source.panel_numbers(photo)
         across, down = pixels[:, 0].astype(np.int64), pixels[:, 1].astype(np.int64)

@@ -179,7 +179,7 @@ class Sample:
     normals
         Unit normals turned to the camera, shape (h, w, 3), float32, 0 where there is none; None where not asked for.
     shown
-        What the photo shows at all, shape (h, w), bool: a straightened photo has black corners. None: all of it.
+        What the photo shows, shape (h, w), bool: masks, and corners of straightened photos, are black. None: all of it.
     x_px, y_px
         Of the window's first pixel in the photo.
     """
@@ -378,7 +378,7 @@ class PhotoStream:
         rows, columns = slice(y, y + height), slice(x, x + width)
         flags = photo.flags[rows, columns]
         normals = photo.normals_enu(x, y, width, height)
-        is_shown = None if self.photos[number].intrinsics.is_straight else torch.from_numpy(flags & SHOWN > 0)
+        is_shown = flags & SHOWN > 0
         return Sample(
             number,
             View.of(photo.photo, self._origin_enu_m).cropped(x, y, width, height),
@@ -386,7 +386,7 @@ class PhotoStream:
             torch.from_numpy(flags & FACADE > 0),
             torch.from_numpy(photo.panels[rows, columns].astype(np.int32) - 1),
             None if normals is None else torch.from_numpy(np.ascontiguousarray(normals)),
-            is_shown,
+            None if is_shown.all() else torch.from_numpy(is_shown),
             x,
             y,
         )

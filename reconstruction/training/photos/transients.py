@@ -86,7 +86,11 @@ class Transients(nn.Module):
         first = int(of_pixels[0, 0])
         truth = sample.display.cpu() / 255.0
         errors = (no_brighter(display.cpu(), truth, self._white) - truth).numpy().reshape(-1, 3)
-        found, counts = mean_errors(of_pixels.ravel() - first, errors, int(of_pixels[-1, -1]) - first + 1)
+        places = of_pixels.ravel() - first
+        if sample.shown is not None:
+            told = sample.shown.cpu().numpy().ravel()
+            places, errors = places[told], errors[told]
+        found, counts = mean_errors(places, errors, int(of_pixels[-1, -1]) - first + 1)
         side = int(self.blocks.sides_px[sample.number])
         seen = np.flatnonzero(2 * counts >= side * side)
         of_blocks = first + seen

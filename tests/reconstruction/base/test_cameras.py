@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from planning.aircraft.catalogue import profile
 from planning.geo.frames import camera_axes
 from planning.plan import Viewpoint
-from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto, cam_from_enu
+from reconstruction.base.cameras import STRAIGHT_HALF_DEG, Intrinsics, Pose, PosedPhoto, cam_from_enu
 
 CAMERA = profile("m3e").camera
 STRAIGHT = Intrinsics.of(CAMERA)
@@ -113,3 +113,57 @@ def test_a_bent_camera_has_no_rays_for_no_pixels() -> None:
     bent = Intrinsics(64, 48, 60.0, 60.0, 32.0, 24.0, (-0.1, 0.0, 0.0, 0.0, 0.0))
     assert bent.rays(np.zeros((0, 2))).shape == (0, 3)
     assert bent.pixels(np.zeros((0, 3))).shape == (0, 2)
+
+
+FISHEYES = [
+    (0.0, 0.0, 0.0, 0.0),
+    (0.05, -0.02, 0.003, -0.0005),
+    (-0.03, 0.01, -0.005, 0.0008),
+]
+
+
+def fisheye(numbers: tuple[float, float, float, float], f_px: float = 400.0) -> Intrinsics:
+    return Intrinsics(1200, 900, f_px, f_px - 2.0, 610.0, 440.0, fisheye=numbers)
+
+
+@pytest.mark.parametrize("numbers", FISHEYES)
+def test_a_fisheye_projects_as_opencv_and_its_rays_are_the_inverse(numbers: tuple[float, float, float, float]) -> None:
+    lens, rng = fisheye(numbers), np.random.default_rng(0)
+    points = rng.normal(size=(2000, 3))
+    points[:, 2] = np.abs(points[:, 2])
+    nothing = np.zeros(3)
+    wanted, _ = cv2.fisheye.projectPoints(points.reshape(-1, 1, 3), nothing, nothing, lens.matrix, np.array(numbers))
+    assert np.abs(lens.pixels(points) - wanted[:, 0]).max() < 1e-9
+    pixels = rng.uniform((0.0, 0.0), (1200.0, 900.0), (2000, 2))
+    rays = lens.rays(pixels)
+    assert rays[:, 2].min() < 0.0  # corners show what is behind the camera
+    assert np.abs(lens.pixels(3.0 * rays) - pixels).max() < 1e-8
+    axis = lens.pixels(np.array([[0.0, 0.0, 2.0], [0.0, 0.0, -2.0], [0.0, 0.0, 0.0]]))
+    assert axis[0] == pytest.approx((610.0, 440.0))
+    assert not np.isfinite(axis[1:]).any()
+
+
+def test_a_fisheye_shows_nothing_beyond_where_its_polynomial_folds() -> None:
+    lens = fisheye((0.0, -0.1, 0.0, 0.0))  # grows up to 1.19 rad
+    assert lens.fisheye_reach_rad == pytest.approx(2.0**0.25, abs=2e-3)
+    angles = np.array([1.18, 1.3, 2.0])
+    points = np.column_stack([np.sin(angles), np.zeros(3), np.cos(angles)])
+    assert lens.is_seen(points).tolist() == [True, False, False]
+    assert np.isfinite(lens.rays(np.array([[0.0, 0.0], [1200.0, 900.0]]))).all()
+
+
+@pytest.mark.parametrize("f_px", [250.0, 400.0, 2000.0])
+def test_a_fisheye_made_straight_reaches_as_far_as_its_photo_within_a_limit(f_px: float) -> None:
+    lens = fisheye(FISHEYES[1], f_px)
+    straight = lens.straight()
+    assert straight.is_straight
+    assert (straight.fx_px, straight.fy_px) == (lens.fx_px, lens.fy_px)
+    for side, inner in (((0.0, 440.0), (0.0, None)), ((1200.0, 440.0), (1.0, None)), ((610.0, 900.0), (None, 1.0))):
+        angle = min(np.radians(STRAIGHT_HALF_DEG), float(np.arccos(lens.rays(np.array([side]))[0, 2])))
+        x, y = (
+            None if share is None else share * size
+            for share, size in zip(inner, (straight.width_px, straight.height_px), strict=True)
+        )
+        ray = straight.rays(np.array([[straight.cx_px if x is None else x, straight.cy_px if y is None else y]]))[0]
+        reached = float(np.arccos(ray[2] / np.linalg.norm(ray)))
+        assert reached == pytest.approx(angle, abs=2.0 / straight.fx_px)

@@ -39,6 +39,27 @@ def test_every_model_projects_as_opencv_does(model, parameters, same_as):
     np.testing.assert_allclose(intrinsics_of(camera).pixels(POINTS.reshape(-1, 3)), expected, atol=1e-8)
 
 
+@pytest.mark.parametrize(
+    ("model", "parameters"),
+    [
+        ("OPENCV_FISHEYE", (1500, 1510, 2010, 1490, 0.05, -0.02, 0.003, -0.0005)),
+        ("RADIAL_FISHEYE", (1500, 2010, 1490, 0.05, -0.02)),
+        ("SIMPLE_RADIAL_FISHEYE", (1500, 2010, 1490, 0.05)),
+    ],
+)
+def test_fisheyes_project_as_opencv_does_and_come_back(model, parameters):
+    camera = ColmapCamera(1, model, 4000, 3000, tuple(map(float, parameters)))
+    n_focal = 4 - int(model != "OPENCV_FISHEYE")
+    fx, fy, cx, cy = parameters[:4] if n_focal == 4 else (parameters[0], *parameters[:3])
+    matrix = np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
+    numbers = np.array([*parameters[n_focal:], 0.0, 0.0, 0.0][:4], float)
+    points, nothing = POINTS.reshape(-1, 1, 3) * (4.0, 4.0, 1.0), np.zeros(3)
+    expected, _ = cv2.fisheye.projectPoints(points, nothing, nothing, matrix, numbers)
+    lens = intrinsics_of(camera)
+    np.testing.assert_allclose(lens.pixels(points.reshape(-1, 3)), expected[:, 0], atol=1e-8)
+    assert intrinsics_of(camera_of(lens, 3)) == lens
+
+
 def test_a_rational_distortion_is_followed_or_refused_with_its_size():
     mild = (3000.0, 3010.0, 2010.0, 1490.0, 0.05, 0.01, 1e-4, -2e-4, 0.0, 0.1, 0.005, 0.0)
     camera = ColmapCamera(1, "FULL_OPENCV", 4000, 3000, mild)

@@ -183,7 +183,7 @@ def test_damaged_bytes_never_do_more_than_be_refused(data):
         ("cameras", "1 PINHOLE 4000 3000 3000 3000 2000", "expected 4 numbers for PINHOLE"),
         ("cameras", "1 PINHOLE 4000 3000 -3000 3000 2000 1500", "above 0"),
         ("cameras", "1 PINHOLE 4000 3000 nan 3000 2000 1500", "expected 4 numbers"),
-        ("cameras", "1 OPENCV_FISHEYE 4000 3000 1 1 1 1 0 0 0 0", "image_undistorter"),
+        ("cameras", "1 THIN_PRISM_FISHEYE 4000 3000 1 1 1 1 0 0 0 0 0 0 0 0", "image_undistorter"),
         ("images", "1 1 0 0 0 0 0 0", "expected the columns IMAGE_ID"),
         ("images", "1 1 0 0 0 0 0 0 99 a.jpg\n", "has camera 99"),
         ("images", "1 0 0 0 0 0 0 0 7 a.jpg\n", "no rotation"),
@@ -220,10 +220,12 @@ def test_no_point_is_read_in_both_ways_of_writing(tmp_path):
     assert image.point_ids.tolist() == [-1, -1, 4]
 
 
-@pytest.mark.parametrize("number", [5, 77, -1])
+@pytest.mark.parametrize("number", [10, 77, -1])
 def test_camera_models_that_are_not_understood_are_named(tmp_path, number):
     content = COUNT.pack(1) + struct.pack("<IiQQ8d", 3, number, 10, 10, *[1.0] * 8)
-    with pytest.raises(InputError, match=r"camera 3: the camera model (OPENCV_FISHEYE|number \S+) is not supported"):
+    with pytest.raises(
+        InputError, match=r"camera 3: the camera model (THIN_PRISM_FISHEYE|number \S+) is not supported"
+    ):
         read_model(binary(tmp_path, cameras=content))
 
 

@@ -178,10 +178,28 @@ def test_a_straightened_picture_shows_every_direction_where_the_straight_camera_
     rays = BENT.rays(pixels)
     value = 127.0 + 100.0 * np.sin(8.0 * rays[:, 0]) * np.cos(8.0 * rays[:, 1])
     picture = np.repeat(value.reshape(150, 200, 1), 3, axis=2).round().astype(np.uint8)
-    straight, found = straightened(photo, picture)
+    straight, found, valid = straightened(photo, picture)
     rays = straight.intrinsics.rays(pixels)
     wanted = (127.0 + 100.0 * np.sin(8.0 * rays[:, 0]) * np.cos(8.0 * rays[:, 1])).reshape(150, 200)
     assert np.abs(found[5:-5, 5:-5, 0] - wanted[5:-5, 5:-5]).max() < 2.5
+    assert valid.all()
+    right = np.ones((150, 200), bool)
+    right[:, :100] = False
+    _, _, valid = straightened(photo, picture, right)
+    assert not valid[:, :100].any()
+    assert valid[:, 104:].all()
+
+
+def test_black_corners_of_a_straightened_picture_count_for_nothing(tmp_path: Path) -> None:
+    cushion = replace(LENS, distortion=(0.12, 0.0, 0.0, 0.0, 0.0))
+    prepared = prepare(photos_in(tmp_path / "in", cushion, 1), site_model(), tmp_path / "out", QUICK)
+    (photo,) = read_photo_set(tmp_path / "out").photos
+    assert prepared.photos[0].mask == photo.mask == tmp_path / "out" / "valid" / f"{photo.name}.png"
+    valid = cv2.imread(str(photo.mask), cv2.IMREAD_UNCHANGED) > 0
+    assert not valid[[0, 0, -1, -1], [0, -1, 0, -1]].any()
+    assert valid[40:110, 40:160].all()
+    for layer in ("panels", "masks"):
+        assert not cv2.imread(str(tmp_path / "out" / layer / f"{photo.name}.png"), cv2.IMREAD_UNCHANGED)[~valid].any()
 
 
 @pytest.mark.slow
