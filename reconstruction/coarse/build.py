@@ -178,7 +178,7 @@ def build_coarse(
     clock = _Clock()
     taken = read_inputs(folder, photos, stated, monitor)
     colmap = load_colmap()
-    _prepare_folder(kept, taken, parameters)
+    _prepare_folder(kept, folder, taken, parameters)
     run = _run(colmap, kept, folder, taken, parameters, monitor)
     fixed = run.find_features()
     clock.lap("features")
@@ -255,8 +255,8 @@ class _Clock:
 SETTINGS, MAPPED = "settings.json", "mapped.json"
 
 
-def _prepare_folder(kept: Path, taken: CoarseInputs, parameters: CoarseParameters) -> None:
-    """Take away what is of other photos or other settings."""
+def _prepare_folder(kept: Path, folder: Path, taken: CoarseInputs, parameters: CoarseParameters) -> None:
+    """Take away what is of other photos or other settings, and note which folder of photos it is of."""
     files = [
         (name, photo.path.stat().st_size, start_of(photo.path), repr(lens))
         for name, photo, lens in zip(taken.names, taken.metadata, taken.lenses, strict=True)
@@ -265,10 +265,10 @@ def _prepare_folder(kept: Path, taken: CoarseInputs, parameters: CoarseParameter
     settings = [*work, sorted(files)]
     digest = hashlib.sha256(json.dumps(settings).encode()).hexdigest()
     path = kept / SETTINGS
-    if not path.is_file() or read_json(path) != {"sha256": digest}:
+    if not path.is_file() or read_json(path).get("sha256") != digest:
         shutil.rmtree(kept, ignore_errors=True)
     make_folder(kept)
-    write_atomically(path, json.dumps({"sha256": digest}).encode())
+    write_atomically(path, json.dumps({"sha256": digest, "photos": str(folder.resolve())}).encode())
 
 
 def _run(
@@ -459,7 +459,8 @@ def _above_ground(
 ) -> Above | None:
     """The usual camera above the ground, or else above the lowest points; None where no point is below it.
 
-    Photos are looked at where they are given: where the size hangs on it.
+    Only what is below the usual camera counts: a terrace, or a floor of a building, may be the widest level. Photos are
+    looked at where they are given: where the size hangs on it.
     """
     if len(cloud) < 30:
         return None
@@ -467,15 +468,18 @@ def _above_ground(
     points = cloud.points @ turn.T
     cell = extent_of(points) / 100.0
     upright = in_enu(model, Similarity(1.0, turn, np.zeros(3)))
-    ground = find_ground(points, cell) if looked is None else _ground(upright, looked, points, points, cell, 0.0)
-    lowest = ground.z_m if ground.is_seen else float(np.percentile(points[:, 2], LOWEST_PERCENT))
-    height = float(np.median((centres @ turn.T)[:, 2])) - lowest
-    is_flown = float(np.median(-rotations[:, 2] @ up.direction)) > math.sin(LOOKS_DOWN_RAD)
+    usual_z = float(np.median((centres @ turn.T)[:, 2]))
+    below = points[points[:, 2] < usual_z]
+    if not len(below):
+        return None
+    ground = find_ground(below, cell) if looked is None else _ground(upright, looked, below, points, cell, 0.0)
+    lowest = ground.z_m if ground.is_seen else float(np.percentile(below[:, 2], LOWEST_PERCENT))
+    height, is_flown = usual_z - lowest, float(np.median(-rotations[:, 2] @ up.direction)) > math.sin(LOOKS_DOWN_RAD)
     return Above(height, is_flown, ground.is_seen) if height > 0.0 else None
 
 
 LOWEST_PERCENT = 2.0
-"""Of points that may lie below the ground where it was not seen: mismatches."""
+"""Of points below the cameras that may lie below the ground where it was not seen: mismatches."""
 
 
 def _with_dense(

@@ -38,6 +38,7 @@ from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.questions import Answer, Questions
 from groundstation.gui.widgets.scrolling import scrolled, split
 from groundstation.services.jobs.runner import JobContext
+from groundstation.services.photos.coarse import begun_coarse
 from groundstation.services.photos.found_panels import PanelDraft
 from groundstation.services.photos.grid_edits import (
     add_line,
@@ -286,6 +287,9 @@ class PhotosPage(QObject):
 
     def take_step(self, act: Act) -> None:
         """Make a site of photos, read them, find panels in them, or make a data set: each as its button does."""
+        if self.controller.is_busy:
+            self._context.say(Severity.NOTE, self.tr("The photos are being worked on; wait for its end, or cancel it."))
+            return
         match act:
             case Act.FROM_PHOTOS:
                 self._make_coarse()
@@ -430,6 +434,15 @@ class PhotosPage(QObject):
         if photos is None:
             return
         proposed = photos.with_name(f"{photos.name}-coarse") if project is None else project / "coarse"
+        begun = begun_coarse(photos, proposed)
+        if begun is not None:
+            text = self.tr("A coarse model of these photos was begun in {0}, and not finished. What was found is kept.")
+            title, anew = self.tr("Make a coarse model"), self.tr("Begin anew ...")
+            answer = self.questions.go_on(window, title, text.format(begun), anew)
+            if answer is Answer.YES:
+                self.controller.make_coarse(photos, begun)
+            if answer is not Answer.NO:
+                return
         out = self.questions.new_folder(window, self.tr("Folder for the coarse model"), proposed)
         if out is not None:
             self.controller.make_coarse(photos, out)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -27,7 +28,7 @@ from planning.site.importing.options import ImportOptions
 from planning.site.importing.placement import LocalFrame, Placement
 from planning.site.importing.source import SourceModel
 from planning.site.records import NoFlyZone, Obstacle, Site, SiteModel
-from reconstruction.coarse.build import CoarseModel, CoarseParameters, build_coarse, write_sparse
+from reconstruction.coarse.build import SETTINGS, CoarseModel, CoarseParameters, build_coarse, write_sparse
 from reconstruction.coarse.control_and_camera import read_control_points, read_lens
 from reconstruction.coarse.inputs import Stated
 from reconstruction.coarse.parameters import CoarseRequest
@@ -122,6 +123,18 @@ def coarse_files_in_process(
     """As `coarse_files`, for a process of its own: COLMAP ends the process that it runs in when it fails badly."""
     del stop, trace
     return coarse_files(request, monitor)
+
+
+def begun_coarse(photos: Path, beside: Path) -> Path | None:
+    """The folder of a coarse model of these photos that was not finished, the newest beside another; None for none."""
+    begun = list(beside.parent.glob(f"*/{KEPT}/{SETTINGS}"))
+    for path in sorted(begun, key=lambda each: -each.stat().st_mtime):
+        folder = path.parent.parent
+        with suppress(InputError):
+            is_of_these = read_json(path, names_files=True).get("photos") == str(photos.resolve())
+            if is_of_these and not (folder / REPORT_FILE).exists():
+                return folder
+    return None
 
 
 def _write(out: Path, coarse: CoarseModel) -> tuple[Finding, ...]:

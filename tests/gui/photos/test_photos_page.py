@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from dataclasses import replace
 
@@ -11,6 +12,7 @@ from PySide6.QtTest import QTest
 
 from groundstation.services.photos.intake import PhotoMark
 from groundstation.services.project.document import Document, PlanEntry
+from groundstation.services.project.steps import Act
 from groundstation.services.site.edits import HeightReference, set_origin
 from planning.aircraft.catalogue import profile
 from planning.base.findings import Severity
@@ -212,6 +214,32 @@ def test_a_coarse_model_is_asked_for_by_its_button_and_what_is_wrong_is_said(pag
     page.idle()
     assert any("at least 3 photos, got 2" in message.text for message in page.messages)
     assert page.tab.coarse.isEnabled()
+
+
+def test_a_coarse_model_that_was_begun_goes_on_in_its_folder(page, controller, folder, tmp_path):
+    few, begun = tmp_path / "few", tmp_path / "tower" / ".coarse"
+    few.mkdir()
+    for path in sorted(folder.iterdir())[:2]:
+        shutil.copy(path, few)
+    begun.mkdir(parents=True)
+    (begun / "settings.json").write_text(json.dumps({"sha256": "", "photos": str(few.resolve())}))
+    with clicked(choose(few), "Begin anew ...", escape) as words:
+        click_on(controller.window, page.tab.coarse)
+    assert "and not finished" in words[1]
+    assert str(tmp_path / "tower") in words[1]
+    with clicked(choose(few), escape):
+        click_on(controller.window, page.tab.coarse)
+    assert not any("at least 3 photos" in message.text for message in page.messages)
+    with clicked(choose(few), "Go on"):
+        click_on(controller.window, page.tab.coarse)
+    page.tab.take_step(Act.FROM_PHOTOS)  # while it runs: no second dialog
+    page.idle()
+    assert any("are being worked on" in message.text for message in page.messages)
+    assert any("at least 3 photos, got 2" in message.text for message in page.messages)
+    (begun / "settings.json").write_text(json.dumps({"sha256": "", "photos": str(folder)}))
+    with clicked(choose(few), escape) as words:
+        click_on(controller.window, page.tab.coarse)
+    assert "Folder for the coarse model" in words[1]
 
 
 @pytest.mark.slow

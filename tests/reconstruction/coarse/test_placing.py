@@ -12,9 +12,11 @@ from planning.base.errors import InputError
 from planning.geo.frames import Origin
 from planning.geo.geoid import ellipsoid_from_amsl_m
 from reconstruction.base.cameras import cam_from_enu
-from reconstruction.coarse.cloud import FoundPlane, Up, turn_upright, up_of_cameras, up_of_planes
+from reconstruction.coarse.build import _above_ground
+from reconstruction.coarse.cloud import Cloud, FoundPlane, Up, turn_upright, up_of_cameras, up_of_planes
 from reconstruction.coarse.placing import Above, Control, Measured, about_height, contradicts, in_sigmas, place_model
 from reconstruction.colmap.georeference import Similarity
+from reconstruction.colmap.record import ColmapModel
 
 TRUTH = Similarity(3.7, Rotation.from_euler("zyx", [0.7, 0.4, -1.1]).as_matrix(), np.array([12.0, -5.0, 30.0]))
 """From the model to the local frame."""
@@ -160,6 +162,24 @@ def test_a_guessed_size_is_told_and_no_size_is_refused():
     assert "scale-guessed" in {found.code for found in placed.findings}
     with pytest.raises(InputError, match="how far apart two photos"):
         place_model(centres, rotations, nothing, up_in_model())
+
+
+def test_people_stand_on_what_is_below_them_and_not_on_a_wide_terrace_above():
+    rng = np.random.default_rng(0)
+    lawn, terrace = rng.uniform(-6.0, 6.0, (150, 2)), rng.uniform(-40.0, 40.0, (4000, 2))
+    points = np.vstack([np.column_stack([lawn, np.zeros(150)]), np.column_stack([terrace, np.full(4000, 3.0)])])
+    n = len(points)
+    cloud = Cloud(
+        points, np.zeros((n, 3), np.uint8), np.full(n, 0.01), np.tile([0.0, 0.0, 1.0], (n, 1)), np.full(n, 2),
+        np.zeros(n + 1, np.int64), np.zeros(0, np.int64), np.zeros((0, 3)),
+    )  # fmt: skip
+    places, turns = orbit(radius_m=20.0)
+    places = np.column_stack([places[:, :2], np.full(len(places), 1.6)])
+    above = _above_ground(ColmapModel({}, {}), None, cloud, places, turns, Up(np.array([0.0, 0.0, 1.0]), 0.01))
+    assert above is not None
+    assert above.height == pytest.approx(1.6, abs=0.1)
+    under = cloud.of(points[:, 2] > 2.0)
+    assert _above_ground(ColmapModel({}, {}), None, under, places, turns, Up(np.array([0.0, 0.0, 1.0]), 0.01)) is None
 
 
 def test_a_guess_for_drones_is_another_one_and_less_sure():
