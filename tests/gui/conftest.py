@@ -36,6 +36,17 @@ def _garbage_stays_in_this_thread():
     gc.enable()
 
 
+@pytest.fixture(params=[1.0, 1.6])
+def letters(application, request):
+    """Letters of usual size, and as large as they can be chosen: their size by the usual one."""
+    from groundstation.gui.widgets.theme import apply_theme
+    from groundstation.services.settings import Theme
+
+    apply_theme(application, Theme.LIGHT, request.param)
+    yield request.param
+    apply_theme(application, Theme.LIGHT)
+
+
 @pytest.fixture(scope="session")
 def worker():
     """The process in which the windows of all tests plan."""

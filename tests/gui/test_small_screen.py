@@ -28,7 +28,7 @@ from groundstation.gui.shared_view import SharedViewPage
 from groundstation.gui.widgets.inputs import ChoiceBox
 from groundstation.gui.widgets.scrolling import FittedLine, ShortText
 from groundstation.services.fly.events import Request, ViewState
-from groundstation.services.fly.options import ConnectionChoice
+from groundstation.services.fly.options import ConnectionChoice, LinkKind
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.settings import Language
 from planning.base.findings import Severity
@@ -186,6 +186,25 @@ def cut_labels(window):
     return found
 
 
+def cut_words(window):
+    """Texts of several lines that are lower than their lines."""
+    return [
+        f"{name_of(label)} of {label.height()} px needs {label.heightForWidth(label.width())} at {label.width()}"
+        for label in window.findChildren(QLabel)
+        if label.isVisible() and label.window() is window and label.wordWrap() and label.text()
+        if label.heightForWidth(label.width()) > label.height() + 1
+    ]
+
+
+def cut_lines(window):
+    """Lines to type into that show less than what stands in them."""
+    return [
+        f"{name_of(line)}: {line.fontMetrics().horizontalAdvance(line.text())} > {line.width()}"
+        for line in controls(window)
+        if isinstance(line, QLineEdit) and line.fontMetrics().horizontalAdvance(line.text()) > line.width() - 8
+    ]
+
+
 def hidden_titles(window):
     """Rows of tabs in which the title of the one that is shown is not seen whole."""
     found = []
@@ -209,7 +228,8 @@ class ViewPictures:
 
     def at(self, state, window=None):
         window = self.controller.window if window is None else window
-        checks = (out_of_reach, cut_short, cut_choices, squeezed, sideways, cut_labels, hidden_titles)
+        of_words = cut_short, cut_choices, cut_labels, cut_words, cut_lines, hidden_titles
+        checks = (out_of_reach, squeezed, sideways, *of_words)
         problems = ["not looked yet"]
         # Layouts of areas within areas take some turns, and a busy machine comes to them late.
         for _ in range(3):
@@ -342,6 +362,9 @@ def _in_the_fly_tab(looks, window):
         page.right.setCurrentIndex(number)
         looks.at(f"fly, right {number}")
     page.right.setCurrentIndex(0)
+    for kind in LinkKind:
+        page.connection.kind.setCurrentIndex(page.connection.kind.findData(kind))
+        looks.at(f"fly, {kind.name}")
     page.controller.set_choice(ConnectionChoice(speed_up=20.0))
     page.connection.setValue(page.controller.choice)
     page.connection.button.click()

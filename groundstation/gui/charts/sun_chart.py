@@ -1,20 +1,26 @@
 """The day of a site as a bar: when the sun is up, light on facades, and what take-offs of sorties spoil.
 
-Rows tell by height as well as by colour: tall is all in the sun, or a take-off that spoils nothing.
+Rows tell by height as well as by colour: tall is all in the sun, or a take-off that spoils nothing. Where there is no
+room for all rows, they get lower, their letters with them, down to those of usual size; then they scroll, under hours
+that stay.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QColor, QFontMetricsF, QMouseEvent, QPainter, QPaintEvent, QPen
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QMouseEvent, QMoveEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
 from groundstation.gui.widgets.theme import Colours, colours
 from groundstation.services.mission.sunlight import HEIGHTS, DayRow, Look
 
-PAD_PX, GAP_PX = 6.0, 4.0
+PAD_PX, GAP_PX, TICK_PX = 6.0, 4.0, 4.0
+
+LEAST_LINE_PX = 17.0
+"""Height of a line of letters of usual size: those of large ones get no smaller."""
 
 NAMES_SHARE = 0.3
 """Of the width that names may take; longer ones lose their middle."""
@@ -70,16 +76,35 @@ class SunChart(QWidget):
         return QPointF(box.left() + share * box.width(), box.center().y())
 
     def _make_room(self) -> None:
-        line = QFontMetricsF(self.font()).height()
-        n = max(1, len(self._rows))
-        self.setMinimumHeight(round(n * (line + GAP_PX) + line + 2.0 * PAD_PX))
+        n, usual = max(1, len(self._rows)), QFontMetricsF(self.font()).height()
+        self.setMinimumHeight(math.ceil(self._between_px() + (n + 1) * min(LEAST_LINE_PX, usual)))
+
+    def _between_px(self) -> float:
+        """Height of all but the rows and the hours themselves."""
+        return 2.0 * PAD_PX + max(0, len(self._rows) - 1) * GAP_PX + TICK_PX
+
+    def line_px(self) -> float:
+        """Height of a row, and of the hours: that of the letters where there is room for it."""
+        n, usual = max(1, len(self._rows)), QFontMetricsF(self.font()).height()
+        return min(usual, max((self.height() - self._between_px()) / (n + 1), LEAST_LINE_PX))
+
+    def _letters(self) -> QFont:
+        font = QFont(self.font())
+        font.setPointSizeF(font.pointSizeF() * self.line_px() / QFontMetricsF(font).height())
+        return font
+
+    def hours_top_px(self) -> float:
+        """Where the hours begin: below the last row, or over the rows, at the lower edge of what is seen of them."""
+        seen = self.visibleRegion().boundingRect()
+        lower_edge = self.height() if seen.isEmpty() else seen.bottom() + 1
+        return min(self._box(len(self._rows) - 1).bottom(), lower_edge - PAD_PX - self.line_px() - TICK_PX)
 
     def _box(self, row: int) -> QRectF:
-        metrics = QFontMetricsF(self.font())
+        metrics = QFontMetricsF(self._letters())
         right = PAD_PX + 0.5 * metrics.horizontalAdvance("24:00")
         names = max((metrics.horizontalAdvance(each.name) for each in self._rows), default=0.0)
         left = max(right, 2.0 * PAD_PX + min(names, NAMES_SHARE * self.width()))
-        line = metrics.height()
+        line = self.line_px()
         return QRectF(left, PAD_PX + row * (line + GAP_PX), max(1.0, self.width() - left - right), line)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:  # noqa: N802
@@ -95,6 +120,11 @@ class SunChart(QWidget):
             self._make_room()
             self.update()
 
+    def moveEvent(self, event: QMoveEvent) -> None:  # noqa: N802
+        """Have the hours stay where they are while rows scroll below them."""
+        super().moveEvent(event)
+        self.update()
+
     def paintEvent(self, _event: QPaintEvent) -> None:  # noqa: N802
         """Names, rows, hours, the mark."""
         painter, look = QPainter(self), colours()
@@ -104,7 +134,7 @@ class SunChart(QWidget):
             flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
             painter.drawText(QRectF(self.rect()).adjusted(PAD_PX, PAD_PX, -PAD_PX, -PAD_PX), int(flags), self.empty)
             return
-        line = QFontMetricsF(painter.font()).height()
+        painter.setFont(self._letters())
         for number, row in enumerate(self._rows):
             box = self._box(number)
             painter.setPen(QColor(look.text))
@@ -113,12 +143,12 @@ class SunChart(QWidget):
             painter.drawText(room, int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter), name)
             self._paint_row(painter, box, row, look)
         last = self._box(len(self._rows) - 1)
-        self._paint_hours(painter, last, line, look)
         if self._mark is not None:
             x = self.place_of(self._mark).x()
             for colour, width_px in ((look.base, 4.0), (look.text, 2.0)):
                 painter.setPen(QPen(QColor(colour), width_px))
                 painter.drawLine(QPointF(x, self._box(0).top()), QPointF(x, last.bottom()))
+        self._paint_hours(painter, last, look)
 
     def _paint_row(self, painter: QPainter, box: QRectF, row: DayRow, look: Colours) -> None:
         fills = {
@@ -147,13 +177,16 @@ class SunChart(QWidget):
         painter.setPen(QColor(look.line))
         painter.drawRect(box)
 
-    def _paint_hours(self, painter: QPainter, last: QRectF, line: float, look: Colours) -> None:
+    def _paint_hours(self, painter: QPainter, last: QRectF, look: Colours) -> None:
+        top = self.hours_top_px()
+        if top < last.bottom():
+            painter.fillRect(QRectF(0.0, top, self.width(), self.height() - top), QColor(look.base))
         painter.setPen(QColor(look.text))
         hour_px = HOURS_APART * QFontMetricsF(painter.font()).horizontalAdvance("24:00")
         every = 1 + int(hour_px * max(1, len(self._hours) - 1) / max(1.0, last.width()))
         for number, (share, text) in enumerate(self._hours):
             x = last.left() + share * last.width()
-            painter.drawLine(QPointF(x, last.bottom()), QPointF(x, last.bottom() + 4.0))
+            painter.drawLine(QPointF(x, top), QPointF(x, top + TICK_PX))
             if number % every == 0:
-                at = QRectF(x - hour_px, last.bottom() + 4.0, 2.0 * hour_px, line)
+                at = QRectF(x - hour_px, top + TICK_PX, 2.0 * hour_px, self.line_px())
                 painter.drawText(at, int(Qt.AlignmentFlag.AlignHCenter), text)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from enum import Enum, auto
 
-from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtCore import QSignalBlocker, QSize, Signal
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -130,6 +130,16 @@ class SigningBox(QWidget):
 MAX_SPEED_UP = 50.0
 
 
+class _AddressLine(QLineEdit):
+    """Has room for each of the usual addresses; its title goes above it before it has less."""
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802
+        """A letter wider than the longest, for the cursor."""
+        hint = super().minimumSizeHint()
+        longest = max(map(self.fontMetrics().horizontalAdvance, USUAL_ADDRESS.values()))
+        return QSize(longest + hint.width(), hint.height())
+
+
 class ConnectionBox(QWidget):
     """Edits a `ConnectionChoice`.
 
@@ -151,7 +161,7 @@ class ConnectionBox(QWidget):
         self._value = ConnectionChoice()
         self._addresses = dict(USUAL_ADDRESS)
         self._is_connected = False
-        self.kind, self.autopilot, self.address = ChoiceBox(), ChoiceBox(), QLineEdit()
+        self.kind, self.autopilot, self.address = ChoiceBox(), ChoiceBox(), _AddressLine()
         self.signing = SigningBox()
         self.speed_up = NumberBox(1.0, MAX_SPEED_UP, 1.0, " x", 0)
         self.button = QPushButton()

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
-from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QCheckBox, QLabel, QLineEdit, QVBoxLayout, QWidget
+from PySide6.QtCore import QRect, QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtGui import QPainter, QPaintEvent, QPalette
+from PySide6.QtWidgets import QCheckBox, QLabel, QLineEdit, QStyle, QStyleOptionFrame, QVBoxLayout, QWidget
 
 from groundstation.gui.application.translate import translated
 from groundstation.gui.fly.joystick_controller import JoystickBox
 from groundstation.gui.widgets.inputs import Form
+from groundstation.gui.widgets.scrolling import LEAST_SCALE, fitted
 from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.gui.widgets.value_boxes import FileBox, muted
 from groundstation.services.fly.options import FlightSettings
@@ -23,6 +26,48 @@ from missions.mavlink.remote_id import EXAMPLE, operator_number, serial_number
 from planning.base.errors import InputError
 
 VIDEO_EXAMPLE = "rtsp://192.168.144.25:8554/main.264"
+
+
+EXAMPLE_ASIDE_PX = 2
+"""Between the frame of a line and what stands in it, as Qt has it."""
+
+
+class ExampleLine(QLineEdit):
+    """A line to type into; the example that says the form of what is wanted is written smaller where it has no room."""
+
+    def __init__(self, example: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._example = example
+        self.setAccessibleDescription(example)
+
+    def minimumSizeHint(self) -> QSize:  # noqa: N802
+        """Room for the smallest letters; a title goes above before there is less."""
+        hint = super().minimumSizeHint()
+        return QSize(
+            hint.width() + math.ceil(LEAST_SCALE * self.fontMetrics().horizontalAdvance(self._example)), hint.height()
+        )
+
+    def shown_example(self) -> str:
+        """The example, as far as there is room for it."""
+        return fitted(self.font(), self._example, self._room().width())[1]
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
+        """Write the example where nothing was typed yet."""
+        super().paintEvent(event)
+        if self.text():
+            return
+        painter, room = QPainter(self), self._room()
+        font, text = fitted(self.font(), self._example, room.width())
+        painter.setFont(font)
+        painter.setPen(self.palette().color(QPalette.ColorRole.PlaceholderText))
+        painter.drawText(room, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, text)
+        painter.end()
+
+    def _room(self) -> QRect:
+        option = QStyleOptionFrame()
+        self.initStyleOption(option)
+        room = self.style().subElementRect(QStyle.SubElement.SE_LineEditContents, option, self)
+        return room.adjusted(EXAMPLE_ASIDE_PX, 0, -EXAMPLE_ASIDE_PX, 0)
 
 
 class SettingsPage(QWidget):
@@ -42,15 +87,13 @@ class SettingsPage(QWidget):
         self.speaks = QCheckBox(self.tr("Warnings are spoken"))
         self._voice_text, self.joystick = muted(""), JoystickBox()
         self._kept = FlightSettings()
-        self.operator, self.serial, self._said = QLineEdit(), QLineEdit(), QLabel()
-        self.operator.setPlaceholderText(EXAMPLE)
+        self.operator, self.serial, self._said = ExampleLine(EXAMPLE), QLineEdit(), QLabel()
         self.operator.setToolTip(
             self.tr("For aircraft with remote ID. The secret part proves the checksum, and is neither sent nor kept")
         )
-        self.battery, self.corrections, self.password = QLineEdit(), QLineEdit(), QLineEdit()
+        self.battery, self.corrections, self.password = QLineEdit(), ExampleLine(EXAMPLE_CASTER), QLineEdit()
         self.battery.setMaxLength(40)
         self.battery.setToolTip(self.tr("Its name: the log book counts its flights and cycles"))
-        self.corrections.setPlaceholderText(EXAMPLE_CASTER)
         self.corrections.setToolTip(
             self.tr(
                 "NTRIP caster, from the next connection on: USER@HOST:PORT/MOUNTPOINT; over TLS ntrips:// before it"
@@ -67,9 +110,8 @@ class SettingsPage(QWidget):
         # Addresses have the whole width: beside its title half of the example that says their form is cut off.
         _add_below(form, self.tr("RTK corrections"), self.corrections)
         form.addRow(self.tr("Their password"), self.password)
-        self.video, self._video_said = QLineEdit(), muted("")
+        self.video, self._video_said = ExampleLine(VIDEO_EXAMPLE), muted("")
         self._offered: OfferedVideo | None = None
-        self.video.setPlaceholderText(VIDEO_EXAMPLE)
         self.video.setToolTip(self.tr("The camera's stream, by RTSP, or as an MPEG transport stream by UDP"))
         _add_below(form, self.tr("Video"), self.video)
         self.definition = FileBox(

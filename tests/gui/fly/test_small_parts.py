@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from groundstation.services.fly.options import FlightSettings
+from groundstation.services.fly.options import USUAL_ADDRESS, ConnectionChoice, FlightSettings, LinkKind
 from groundstation.services.jobs.runner import JobRunner
 from groundstation.services.project.document import Document
 from groundstation.services.project.session import Session
@@ -166,8 +166,28 @@ def test_each_aircraft_has_a_row_and_many_have_one_line_each(application):
     assert not box.isVisibleTo(None)
 
 
-def test_examples_of_addresses_are_read_whole_and_what_says_nothing_takes_no_room(application):
-    from groundstation.gui.fly.flight_settings_page import SettingsPage
+def colours_in(widget):
+    picture = widget.grab().toImage()
+    return {picture.pixel(x, y) for x in range(5, picture.width() - 5) for y in range(5, picture.height() - 5)}
+
+
+@pytest.mark.parametrize("kind", [LinkKind.UDP, LinkKind.TCP, LinkKind.SERIAL])
+def test_usual_addresses_are_read_whole_beside_their_title_or_below_it(application, letters, kind):
+    from groundstation.gui.fly.connection_box import ConnectionBox
+
+    box = ConnectionBox()
+    box.resize(277, 600)
+    box.setValue(ConnectionChoice(kind=kind))
+    box.show()
+    turn_until(application, lambda: box.address.isVisible() and box.address.width() > 0)
+    assert box.address.text() == USUAL_ADDRESS[kind]
+    assert box.address.fontMetrics().horizontalAdvance(box.address.text()) < box.address.width() - 8
+    assert box.width() == 277
+    box.close()
+
+
+def test_examples_of_addresses_are_read_whole_and_what_says_nothing_takes_no_room(application, letters):
+    from groundstation.gui.fly.flight_settings_page import EXAMPLE, EXAMPLE_CASTER, VIDEO_EXAMPLE, SettingsPage
     from groundstation.gui.widgets.scrolling import scrolled
     from groundstation.gui.window.main_window import DETAIL_WIDTH_PX
 
@@ -176,8 +196,12 @@ def test_examples_of_addresses_are_read_whole_and_what_says_nothing_takes_no_roo
     area.resize(DETAIL_WIDTH_PX, 900)
     area.show()
     turn_until(application, lambda: page.video.width() > 0 and page.isVisible())
-    for line in (page.corrections, page.video):
-        assert line.fontMetrics().horizontalAdvance(line.placeholderText()) < line.width() - 8
+    lines = (page.operator, EXAMPLE), (page.corrections, EXAMPLE_CASTER), (page.video, VIDEO_EXAMPLE)
+    for line, example in lines:
+        assert line.shown_example() == example
+        assert len(colours_in(line)) > 10, "the example is written"
+        line.setText(" ")
+        assert len(colours_in(line)) < 10, "the example makes room for what is typed"
     assert not any(label.isVisible() for label in (page._said, page._video_said, page._definition_said))
     page.video.setText("nowhere")
     page.video.editingFinished.emit()

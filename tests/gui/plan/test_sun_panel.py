@@ -5,8 +5,9 @@ from datetime import date, timedelta
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QScrollArea
 
-from groundstation.gui.charts.sun_chart import SunChart
+from groundstation.gui.charts.sun_chart import LEAST_LINE_PX, SunChart
 from groundstation.gui.plan.sun_panel import SunPanel
 from groundstation.services.mission.sunlight import Look, SunRequest, day_rows, hour_marks, sun_report, zone_of_offset
 from groundstation.services.project.document import Document, PlanEntry
@@ -85,6 +86,36 @@ def test_what_is_drawn_where_is_what_the_rows_say(application, flight):
     assert len({colours[name] for name in ("night", "day", "sun")}) == 3
     assert colours["bad"] == picture.pixelColor(2, 2).name(), "many spoiled photos are a low bar"
     chart.close()
+
+
+def test_all_rows_have_room_in_the_list_of_a_small_screen_or_scroll_under_hours_that_stay(application, flight, letters):
+    report = report_of(flight)
+    sky, facade, sortie = day_rows(report)
+    panel = SunPanel()
+    panel.resize(974, 150)
+    panel.show()
+    panel.set_report(report)
+    chart = panel.chart
+    chart.set_rows((sky, facade, facade, sortie), hour_marks(report.day.track))
+    area = panel.findChild(QScrollArea)
+    application.processEvents()
+    assert chart.height() <= area.viewport().height(), "nothing scrolls"
+    assert chart.place_of(0.0, 3).y() < chart.hours_top_px() < chart.height() - chart.line_px()
+    chart.set_rows((sky, *[facade] * 20, sortie), hour_marks(report.day.track))
+    application.processEvents()
+    bar = area.verticalScrollBar()
+    assert chart.line_px() < LEAST_LINE_PX + 1.0
+    assert bar.maximum() > 0
+    hours = []
+    for place in (0, bar.maximum() // 2, bar.maximum()):
+        bar.setValue(place)
+        application.processEvents()
+        seen = area.viewport().grab().toImage()
+        hours.append(seen.copy(0, seen.height() - round(chart.line_px()), seen.width(), round(chart.line_px()) - 6))
+    assert hours[0] == hours[1] == hours[2]
+    assert len({hours[0].pixel(x, hours[0].height() // 2) for x in range(hours[0].width())}) > 5, "letters are there"
+    assert chart.place_of(0.0, 21).y() < chart.hours_top_px(), "the last row can be scrolled to"
+    panel.close()
 
 
 @pytest.mark.slow
