@@ -104,7 +104,7 @@ def surely_more(gains_db: Floats, tolerance_db: float, n_looks: int) -> bool | N
     n = len(gains_db)
     if n < 2:
         return None
-    reach = float(student.ppf(1.0 - 0.5 * MOST_WRONG / n_looks, n - 1)) * _standard_error(gains_db)
+    reach = float(student.ppf(1.0 - 0.5 * MOST_WRONG / n_looks, n - 1)) * standard_error(gains_db)
     mean = float(gains_db.mean())
     if mean - reach > tolerance_db:
         return True
@@ -276,11 +276,11 @@ def trials_of(scores_db: Floats, seconds: float) -> Trials:
     slow, far, near = scores_db.mean(axis=0)
     on_harmonics, on_others = _gains(scores_db)
     return Trials(
-        (float(slow), float(far), float(near)), seconds, (_standard_error(on_harmonics), _standard_error(on_others))
+        (float(slow), float(far), float(near)), seconds, (standard_error(on_harmonics), standard_error(on_others))
     )
 
 
-def _standard_error(differences: Floats) -> float:
+def standard_error(differences: Floats) -> float:
     """Of a mean; 0 of one alone, of which it is not known."""
     return float(differences.std(ddof=1) / np.sqrt(len(differences))) if len(differences) > 1 else 0.0
 

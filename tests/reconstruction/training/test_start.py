@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import torch
 
+from planning.base.effects import decide
 from planning.base.errors import InputError
 from planning.geo.mesh import from_corners, write_mesh
 from reconstruction.dataset.records import coloured_ply
@@ -16,7 +17,7 @@ from reconstruction.light.photo_set import read_photo_set
 from reconstruction.splats.splats import NO_PANEL
 from reconstruction.training import start as start_module
 from reconstruction.training.config import TrainConfig
-from reconstruction.training.start import start_model
+from reconstruction.training.start import SeparateLight, start_model
 from tests.reconstruction.light.synthetic_folder import far
 from tests.reconstruction.training.synthetic_data_set import write_data_set
 
@@ -117,6 +118,15 @@ def test_light_apart_is_on_where_mirror_images_agree_and_off_where_they_do_not(t
     (decision,), name = light_apart(tmp_path / "other", ASKED, monkeypatch)
     assert (decision.on, decision.decided_by, name) == (False, "scene", "harmonics")
     assert "splats alone" in decision.reason
+
+
+@pytest.mark.parametrize(
+    ("apart_db", "unsure_db", "is_on"), [(20.5, 0.1, True), (20.5, 0.3, False), (20.2, 0.0, False)]
+)
+def test_light_apart_counts_as_far_as_its_gain_is_beyond_its_error(apart_db, unsure_db, is_on):
+    decision = decide(SeparateLight(), (apart_db, 20.0, unsure_db, 3.0))
+    assert decision.on == is_on
+    assert decision.size == pytest.approx(apart_db - 20.0 - unsure_db)
 
 
 @pytest.mark.slow
