@@ -77,7 +77,7 @@ def test_what_chose_the_light_is_not_asked_again(data_set, tmp_path, monkeypatch
     decided = [decision.effect for decision in again.record.decisions]
     assert "near-field light" in decided
     assert sorted(set(decided)) == sorted(decided)
-    assert again.record.config == replace(config, own_exposures="off")
+    assert again.record.config == replace(config, own_exposures="off", outlier_photos="off")
 
 
 def test_another_data_set_method_or_a_damaged_file_is_refused(data_set, tmp_path):
