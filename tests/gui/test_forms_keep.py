@@ -295,13 +295,14 @@ def test_a_training_keeps_its_time(application, minutes, preset):
 def test_records_keep_their_numbers_when_something_else_is_changed(application, value, u, v, kind):
     from groundstation.gui.model.record_side import RecordDialog
 
+    kept = []
     for entry in (
         Attribute(PANEL, "thickness", value, "number", "mm", PANEL),
         Defect(PANEL, kind, 3, "2026-05-04", u, v, note="as it is", key=PANEL),
         Maintenance(PANEL, "2026-05-04", "sealed", cost=value, currency="EUR", key=PANEL),
     ):
-        dialog = RecordDialog(type(entry), PANEL, entry, str)
+        dialog = RecordDialog(type(entry), PANEL, entry, str, lambda *found: kept.append(found) or "")
         dialog.accept()
         assert dialog.problem.text() == ""
-        assert dialog.found == entry
+        assert kept[-1] == (entry, None)
         dialog.deleteLater()

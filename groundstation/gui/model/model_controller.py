@@ -323,15 +323,15 @@ class ModelController(QObject):
             self._say(error)
             return ()
 
-    def put(self, entry: Entry, file: Path | None = None) -> bool:
-        """Add an entry, or replace the one with its key; whether it is there now.
+    def put(self, entry: Entry, file: Path | None = None) -> str:
+        """Add an entry, or replace the one with its key; returns why not, and nothing where it is there now.
 
         Parameters
         ----------
         file
             Picture of a defect, or a document: a copy is kept beside the records.
         """
-        return self._write(lambda book: book.put(with_file(book, entry, file)))
+        return self._refused(lambda book: book.put(with_file(book, entry, file)))
 
     def put_all(self, entries: Sequence[Entry]) -> bool:
         """Add several in one step that is taken back as one."""
@@ -408,17 +408,24 @@ class ModelController(QObject):
         return RecordBook(self._book_path) if self.has_records else nullcontext(None)
 
     def _write(self, change: Callable[[RecordBook], object]) -> bool:
+        """Whether records could be changed; the message area has why not."""
+        problem = self._refused(change)
+        if problem:
+            self._context.say(Severity.ERROR, problem)
+        return not problem and self.card is not None
+
+    def _refused(self, change: Callable[[RecordBook], object]) -> str:
+        """Change records; returns why they cannot be changed, and nothing where they are."""
         if self.card is None:
-            return False
+            return ""
         try:
             with book_of_scene(self.card.folder, user_name()) as book:
                 change(book)
         except GroundStationError as error:
-            self._say(error)
-            return False
+            return self._context.localized(str(error))
         self._colour()
         self.recordsChanged.emit()
-        return True
+        return ""
 
     # What comes
 

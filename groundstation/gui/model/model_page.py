@@ -313,7 +313,8 @@ class ModelPage(QObject):
         self._context, self._shared_view = context, shared_view
         self.controller, self.questions = ModelController.of(context), Questions()
         self.side, self.pane = PanelSide(), ScenePane(context, self.controller)
-        self.records, self.report = RecordSide(context.localized), ReportMaker(self.controller, self)
+        self.records = RecordSide(context.localized, self.controller.put)
+        self.report = ReportMaker(self.controller, self)
         self.left = self._make_page()
         self.right: QWidget | None = None
         self.bottom: QWidget | None = None
@@ -365,7 +366,6 @@ class ModelPage(QObject):
         side.colourChanged.connect(controller.colour)
         side.searched.connect(self._search_later)
         self._search.timeout.connect(self._show_panels)
-        records.changeRequested.connect(controller.put)
         records.removeRequested.connect(controller.remove)
         records.undoRequested.connect(controller.undo)
         records.levelChanged.connect(controller.look_at)

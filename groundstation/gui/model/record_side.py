@@ -129,8 +129,12 @@ FILES = frozenset({Defect, Document})
 """Kinds that a file can go with."""
 
 
+KeepRecord = Callable[[Entry, Path | None], str]
+"""Keeps a record, with a file that goes with it; returns why it cannot be kept, and nothing where it was."""
+
+
 class RecordDialog(QDialog):
-    """Edits one record; it closes only with one that is as it should be.
+    """Edits one record; it closes only when that was kept, so that nothing has to be typed again.
 
     Parameters
     ----------
@@ -140,6 +144,8 @@ class RecordDialog(QDialog):
         To be changed; None for a new one.
     words
         Says what an error says in the user's language.
+    keep
+        Called with the record once it is as it should be.
     """
 
     def __init__(
@@ -148,15 +154,15 @@ class RecordDialog(QDialog):
         global_id: str,
         entry: Entry | None,
         words: Callable[[str], str],
+        keep: KeepRecord,
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
-        self._kind, self._global_id, self._entry, self._words = kind, global_id, entry, words
+        self._kind, self._global_id, self._entry, self._words, self._keep = kind, global_id, entry, words, keep
         self.boxes: dict[str, QWidget] = {}
         self.problem = QLabel()
         self.problem.setWordWrap(True)
         self.problem.setProperty("role", "error")
-        self.found: Entry | None = None
         self.file: Path | None = None
         self.choose = QPushButton()
         self.setWindowTitle(kind_words(kind))
@@ -180,14 +186,15 @@ class RecordDialog(QDialog):
         self.setMinimumWidth(420)
 
     def accept(self) -> None:
-        """Take the record, or say what is wrong with it."""
+        """Keep the record, or say what is wrong with it."""
         try:
-            self.found = self.value()
+            problem = self._keep(self.value(), self.file)
         except GroundStationError as error:
-            self.problem.setText(self._words(str(error)))
-            self.problem.show()
-            return
-        super().accept()
+            problem = self._words(str(error))
+        self.problem.setText(problem)
+        self.problem.setVisible(bool(problem))
+        if not problem:
+            super().accept()
 
     def value(self) -> Entry:
         """The record.
@@ -305,25 +312,23 @@ class RecordSide(QWidget):
 
     Signals
     -------
-    changeRequested(Entry, Path or None), removeRequested(Entry)
-    undoRequested(), reportRequested()
+    removeRequested(Entry), undoRequested(), reportRequested()
     tablesWanted(), tablesGiven()
         All records are to be written as tables; or read from tables.
     levelChanged(str)
         Records of a panel, a facade or the building are wanted.
     """
 
-    changeRequested = Signal(object, object)  # noqa: N815  (Qt's own way of naming)
-    removeRequested = Signal(object)  # noqa: N815
+    removeRequested = Signal(object)  # noqa: N815  (Qt's own way of naming)
     undoRequested = Signal()  # noqa: N815
     reportRequested = Signal()  # noqa: N815
     tablesWanted = Signal()  # noqa: N815
     tablesGiven = Signal()  # noqa: N815
     levelChanged = Signal(str)  # noqa: N815
 
-    def __init__(self, words: Callable[[str], str], parent: QWidget | None = None) -> None:
+    def __init__(self, words: Callable[[str], str], keep: KeepRecord, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._words = words
+        self._words, self._keep = words, keep
         self._subject: Subject | None = None
         self.level = ChoiceBox()
         self.title, self.facade, self.extent, self.global_id = (QLabel() for _ in range(4))
@@ -379,9 +384,8 @@ class RecordSide(QWidget):
         """Ask for a new record of a kind, or for what is to be changed."""
         if self._subject is None:
             return
-        dialog = RecordDialog(kind, self._subject.global_id, entry, self._words, self)
-        if dialog.exec() == QDialog.DialogCode.Accepted:
-            self.changeRequested.emit(dialog.found, dialog.file)
+        dialog = RecordDialog(kind, self._subject.global_id, entry, self._words, self._keep, self)
+        dialog.exec()
         dialog.deleteLater()
 
     def _make(self) -> None:

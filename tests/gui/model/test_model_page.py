@@ -31,6 +31,9 @@ from reconstruction.records.entries import Attribute, Defect, Document, Inspecti
 from tests.gui.driving import choose, click_on, clicked, escape, press, shut, turn_until, type_into
 from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
+PNG = b"\x89PNG\r\n\x1a\n" + bytes(40)
+"""What says it is a picture."""
+
 
 def looks(page):
     return page.told.of(ViewRequest)
@@ -175,9 +178,9 @@ def test_records_are_kept_found_and_taken_back(opened):
     global_id = opened.controller.selected
     assert not opened.controller.has_records
     other = opened.controller.card.panels[1].global_id
-    opened.records.changeRequested.emit(Inspection(other, "2026-05-04", "F. Weiß", "visit"), None)
-    opened.records.changeRequested.emit(Defect(global_id, "crack", 4, "2026-05-04", 0.2, 0.7, note="lower left"), None)
-    opened.records.changeRequested.emit(Inspection(global_id, "2026-05-04", "M. Weber", "drone photos"), None)
+    opened.controller.put(Inspection(other, "2026-05-04", "F. Weiß", "visit"))
+    opened.controller.put(Defect(global_id, "crack", 4, "2026-05-04", 0.2, 0.7, note="lower left"))
+    opened.controller.put(Inspection(global_id, "2026-05-04", "M. Weber", "drone photos"))
     assert (opened.controller.card.folder / FILE).is_file()
     texts = tree_texts(opened)
     assert "2026-05-04: crack, severity 4, open, lower left" in texts
@@ -208,7 +211,7 @@ def test_facades_and_the_building_have_records_too(opened):
     assert records.title.text() == card.name
     assert records.add.isEnabled()
     assert records.report.isEnabled()
-    records.changeRequested.emit(Inspection(card.global_id, "2026-02-01", "K. Roth", "all of it"), None)
+    opened.controller.put(Inspection(card.global_id, "2026-02-01", "K. Roth", "all of it"))
     assert "2026-02-01: all of it, K. Roth" in tree_texts(opened)
     choose_level(opened, "facade")
     assert not records.add.isEnabled()
@@ -217,7 +220,7 @@ def test_facades_and_the_building_have_records_too(opened):
     opened.controller.select(panel.global_id)
     assert (records.title.text(), records.global_id.text()) == (panel.facade, panel.facade_id)
     assert not records.extent.isVisibleTo(opened.left)
-    records.changeRequested.emit(Document(panel.facade_id, "drawings of the posts", "plan", "posts.pdf"), None)
+    opened.controller.put(Document(panel.facade_id, "drawings of the posts", "plan", "posts.pdf"))
     assert any("drawings of the posts" in text for text in tree_texts(opened))
     # Another panel of the facade has the same; the panel itself has none of them.
     opened.controller.select(card.panels[3].global_id)
@@ -578,9 +581,8 @@ def test_records_are_added_and_changed_in_a_form_and_not_when_it_is_left(opened)
 def test_a_picture_goes_with_a_defect_and_a_file_with_a_document(opened, tmp_path):
     global_id = opened.controller.card.panels[0].global_id
     opened.controller.select(global_id)
-    (tmp_path / "crack.png").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(40))
+    (tmp_path / "crack.png").write_bytes(PNG)
     (tmp_path / "sheet.pdf").write_bytes(b"%PDF-1.7")
-    (tmp_path / "no.png").write_bytes(b"text")
     left = []
 
     def with_file(texts, times=1):
@@ -595,17 +597,37 @@ def test_a_picture_goes_with_a_defect_and_a_file_with_a_document(opened, tmp_pat
 
     with clicked(with_file({"kind": "crack"}), choose(tmp_path / "crack.png")):
         adds(opened, Defect).trigger()
-    (defect,) = opened.controller.entries_of(Defect, global_id)
-    assert defect.picture.endswith(".png")
+    assert opened.controller.entries_of(Defect, global_id)[0].picture.endswith(".png")
     left.clear()
     with clicked(with_file({"title": "Data sheet"}, 4), "Cancel", escape, shut, choose(tmp_path / "sheet.pdf")):
         adds(opened, Document).trigger()
     assert left == [None] * 4, "a file dialog that was left chose none"
     assert len(opened.controller.entries_of(Document, global_id)[0].sha256) == 64
-    with clicked(with_file({"kind": "crack"}), choose(tmp_path / "no.png")):
+
+
+def test_a_record_that_cannot_be_kept_is_not_typed_again(opened, tmp_path):
+    global_id = opened.controller.card.panels[0].global_id
+    opened.controller.select(global_id)
+    (tmp_path / "no.png").write_bytes(b"text")
+    (tmp_path / "crack.png").write_bytes(PNG)
+    said = []
+
+    def twice(dialog):
+        fill(dialog, {"kind": "crack", "note": "from the sill upwards"})
+        for _ in range(2):
+            click_on(dialog, dialog.choose)
+            press("OK")(dialog)
+            said.append((dialog.isVisible(), dialog.problem.text()))
+
+    with clicked(twice, choose(tmp_path / "no.png"), choose(tmp_path / "crack.png")):
         adds(opened, Defect).trigger()
-    assert "picture" in opened.messages[-1].text
-    assert opened.controller.entries_of(Defect, global_id) == (defect,)
+    (is_open, problem), (is_still_open, last) = said
+    assert is_open
+    assert "no.png" in problem
+    assert "picture" in problem
+    assert (is_still_open, last) == (False, "")
+    (kept,) = opened.controller.entries_of(Defect, global_id)
+    assert (kept.kind, kept.note) == ("crack", "from the sill upwards")
 
 
 def test_a_click_is_no_drag_and_a_drag_no_click(opened):
