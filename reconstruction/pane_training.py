@@ -13,14 +13,15 @@ already, the folders are not needed. docs/concepts/segmentation.md has its data 
 
 A network is surer of photos that it learned from than of others. So how probable panes are is fitted to pictures made
 by chance that it did not learn from, and to photos that are looked at by networks that learned from the other two
-thirds of them: those come first.
+thirds of them: those come first. What speaks against panes is fitted to half of the photos that the network did not
+learn from; without --without only that is fitted.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
 
@@ -30,8 +31,9 @@ from numpy.typing import NDArray
 
 from planning.base.files import read_input_file
 from reconstruction.base.tensor_files import TENSORS_FILE
-from reconstruction.metrics.sets import PhotoSet, annotated_set, folder_set, synthetic_set
-from reconstruction.panels.network.calibration import Source, calibrated, write_regressions
+from reconstruction.metrics.sets import PhotoSet, ScoredPhoto, annotated_set, folder_set, synthetic_set
+from reconstruction.panels.network.calibration import Source, calibrated, calibrated_last, write_regressions
+from reconstruction.panels.network.confidence import regressions
 from reconstruction.panels.network.crops import CropSampler
 from reconstruction.panels.network.network import LARGE, SMALL, PaneNetwork, network_of
 from reconstruction.panels.network.pool import PER_FILE, SYNTHETIC_PX, Pool, read_gathered, write_gathered
@@ -105,8 +107,8 @@ def _corners(mask: NDArray[np.bool_]) -> NDArray[np.float32]:
     return np.asarray(from_lower_left(ordered + 0.5, np.array([0.0, -1.0])), np.float32)
 
 
-CALIBRATED_PX = 512
-"""Size of pictures made by chance that confidences are fitted to."""
+CALIBRATED_PX, LAST_PX = (512,), (768, 512)
+"""Sizes, in turn, of pictures made by chance that confidences are fitted to, and the last of their regressions."""
 
 N_CALIBRATED = 150, 8
 """How many of them, and traced facades of each kind."""
@@ -114,28 +116,45 @@ N_CALIBRATED = 150, 8
 N_LEARNED_AT_MOST = 1000
 """Pictures by chance beyond so many times `PER_FILE`, and traced facades beyond so many, were not learned from."""
 
-WEIGHTS = 0.3, 0.6, 0.5, 2.0
-"""What glass, offices, traced facades and pictures by chance count in the confidences."""
+WEIGHTS, LAST_WEIGHTS = (0.3, 0.6, 0.5, 2.0), (1.0, 1.0, 0.3, 1.0)
+"""What glass, offices, traced facades and pictures by chance count in the confidences, and in the last regression."""
 
 
 def calibrate(glass: PhotoSet, offices: PhotoSet, without: Sequence[PaneNetwork], out: Path) -> None:
     """Fit confidences to panes that the network with its present weights finds, and write them.
 
-    Photos are looked at by those of `FOLDS` networks that have not learned from them.
+    Photos are looked at by those of `FOLDS` networks that have not learned from them; where these are not given, the
+    first two regressions stay as they are. The last is fitted to photos that no network has learned from.
     """
+    first, second, _ = regressions()
+    if without:
+        learned = [islice(each.photos(), 0, None, EVERY_SECOND) for each in (glass, offices)]
+        first, second = calibrated(_sources_to_fit(learned, CALIBRATED_PX, WEIGHTS, without), _tell)
+    others = [islice(each.photos(), 1, None, 2 * EVERY_SECOND) for each in (glass, offices)]
+    last = calibrated_last(_sources_to_fit(others, LAST_PX, LAST_WEIGHTS), first, second, _tell)
+    write_regressions((first, second, last), out)
+
+
+def _sources_to_fit(
+    sets: Sequence[Iterable[ScoredPhoto]],
+    sizes_px: Sequence[int],
+    weights: Sequence[float],
+    looking: Sequence[PaneNetwork] = (),
+) -> list[Source]:
+    """Photos of both sets, looked at by these networks; traced facades; pictures by chance of sizes in turn."""
     n_made, n_traced = N_CALIBRATED
-    first = FIRST_SEED + N_LEARNED_AT_MOST
-    facades = [synthetic_set(name, n_traced, wide_camera(1200, 900), first_seed=first) for name in KINDS]
-    synthetic = (synthetic_picture(PER_FILE * N_LEARNED_AT_MOST + seed, CALIBRATED_PX) for seed in range(n_made))
+    seed = FIRST_SEED + N_LEARNED_AT_MOST
+    facades = [synthetic_set(name, n_traced, wide_camera(1200, 900), first_seed=seed) for name in KINDS]
+    synthetic = (
+        synthetic_picture(PER_FILE * N_LEARNED_AT_MOST + number, sizes_px[number % len(sizes_px)])
+        for number in range(n_made)
+    )
     pictures = (
-        ((photo.image, photo.index) for photo in islice(glass.photos(), 0, None, EVERY_SECOND)),
-        ((photo.image, photo.index) for photo in islice(offices.photos(), 0, None, EVERY_SECOND)),
+        *([(photo.image, photo.index) for photo in photos] for photos in sets),
         ((photo.image, photo.index) for photos in facades for photo in photos.photos()),
         ((picture.image, picture.index) for picture in synthetic),
     )
-    looking = without, without, (), ()
-    sources = [Source(*each) for each in zip(pictures, WEIGHTS, looking, strict=True)]
-    write_regressions(calibrated(sources, _tell), out)
+    return [Source(*each) for each in zip(pictures, weights, (looking, looking, (), ()), strict=True)]
 
 
 def main() -> None:
@@ -160,10 +179,10 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args()
     if options.confidence is not None:
-        if options.glass is None or options.offices is None or options.without is None:
-            parser.error("--confidence needs --glass, --offices and --without")
+        if options.glass is None or options.offices is None:
+            parser.error("--confidence needs --glass and --offices")
         glass = folder_set(options.glass / "photos", options.glass / "truth")
-        without = [network_of(read_input_file(path, TENSORS_FILE)) for path in options.without]
+        without = [network_of(read_input_file(path, TENSORS_FILE)) for path in options.without or ()]
         calibrate(glass, annotated_set("offices", options.offices), without, options.confidence)
         return
     if options.pool is None or options.gathered is None:

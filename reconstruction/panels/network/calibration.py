@@ -17,14 +17,17 @@ from planning.base.json_file import write_atomically
 from reconstruction.panels.network.confidence import (
     FIRST,
     SECOND,
+    THIRD,
     Candidates,
+    Joined,
     Regression,
     candidates_of,
     first_features,
     second_features,
+    third_features,
 )
 from reconstruction.panels.network.network import PaneNetwork, network
-from reconstruction.panels.network.predictions import LONG_SIDES_PX, predict_photo
+from reconstruction.panels.network.predictions import LONG_SIDES_PX, PhotoPrediction, predict_photo
 from reconstruction.panels.network.votes import Picture
 
 Array = NDArray[np.float64]
@@ -61,38 +64,63 @@ class Source:
 class _PictureCandidates:
     """Candidates of one picture, what the first regression weighs, and whether they are there."""
 
+    predictions: PhotoPrediction
     candidates: Candidates
     features: Array
     index: Index
     is_there: NDArray[np.bool_]
 
+    def joined(self, first: Regression) -> Joined:
+        """Those that the first regression keeps."""
+        return self.candidates.joined(first.probability(self.features), self.features)
+
+    def are_there(self, found: Joined) -> NDArray[np.bool_]:
+        """Whether panes are, shape (n,)."""
+        return are_there([pane.corners_px for pane in found.panes], self.index)
+
 
 def calibrated(sources: Sequence[Source], tell: Callable[[str], None]) -> tuple[Regression, Regression]:
-    """Fit both regressions, the second to what the first one keeps."""
+    """Fit the first two regressions, the second to what the first one keeps."""
+    seen, weights = _seen(sources, tell), [source.weight for source in sources]
+    first = _fitted([[(one.features, one.is_there) for one in part] for part in seen], weights)
+    joined = [[(one.joined(first), one) for one in part] for part in seen]
+    second = _fitted(
+        [[(second_features(found), one.are_there(found)) for found, one in part] for part in joined], weights
+    )
+    return first, second
+
+
+def calibrated_last(
+    sources: Sequence[Source], first: Regression, second: Regression, tell: Callable[[str], None]
+) -> Regression:
+    """Fit the third regression, to what the first one keeps and the second one says of it."""
+    joined = [[(one.joined(first), one) for one in part] for part in _seen(sources, tell)]
+    return _fitted(
+        [
+            [
+                (third_features(found, second.log_odds(second_features(found)), one.predictions), one.are_there(found))
+                for found, one in part
+            ]
+            for part in joined
+        ],
+        [source.weight for source in sources],
+    )
+
+
+def _seen(sources: Sequence[Source], tell: Callable[[str], None]) -> list[list[_PictureCandidates]]:
     seen = []
     for number, source in enumerate(sources):
         looking = cycle(source.networks or [network()])
         seen.append([_picture_candidates(*picture, by) for picture, by in zip(source.pictures, looking, strict=False)])
         tell(f"source {number}: {sum(len(one.is_there) for one in seen[-1])} candidates")
-    weights = [source.weight for source in sources]
-    first = _fitted([[(one.features, one.is_there) for one in part] for part in seen], weights)
-    joined = [[one.candidates.joined(first.probability(one.features), one.features) for one in part] for part in seen]
-    second = _fitted(
-        [
-            [
-                (second_features(found), are_there([pane.corners_px for pane in found.panes], one.index))
-                for found, one in zip(founds, part, strict=True)
-            ]
-            for founds, part in zip(joined, seen, strict=True)
-        ],
-        weights,
-    )
-    return first, second
+    return seen
 
 
 def _picture_candidates(image: Picture, index: Index, by: PaneNetwork) -> _PictureCandidates:
-    candidates = candidates_of(predict_photo(image, LONG_SIDES_PX[-1], by=by))
-    return _PictureCandidates(candidates, first_features(candidates), index, are_there(list(candidates.quads), index))
+    predictions = predict_photo(image, LONG_SIDES_PX[-1], by=by)
+    candidates = candidates_of(predictions)
+    is_there = are_there(list(candidates.quads), index)
+    return _PictureCandidates(predictions, candidates, first_features(candidates), index, is_there)
 
 
 def are_there(quads: Sequence[Array], index: Index) -> NDArray[np.bool_]:
@@ -137,13 +165,13 @@ def _fitted(parts: Sequence[Sequence[tuple[Array, NDArray[np.bool_]]]], weights:
     return Regression(scaled, float(coefficients[-1] - scaled @ middle))
 
 
-def write_regressions(regressions: tuple[Regression, Regression], path: Path) -> None:
-    """Write both as JSON, weights by the names of features."""
+def write_regressions(regressions: tuple[Regression, Regression, Regression], path: Path) -> None:
+    """Write them as JSON, weights by the names of features."""
     stored: dict[str, Any] = {
         part: {
             "bias": round(one.bias, 5),
             "weights": {name: round(float(value), 5) for name, value in zip(names, one.weight, strict=True)},
         }
-        for part, names, one in zip(("first", "second"), (FIRST, SECOND), regressions, strict=True)
+        for part, names, one in zip(("first", "second", "third"), (FIRST, SECOND, THIRD), regressions, strict=True)
     }
     write_atomically(path, (json.dumps(stored, indent=1) + "\n").encode())

@@ -1,11 +1,12 @@
 """How probably panes are there: by what all sizes of a photo say of each, and by what stands beside it.
 
-Two logistic regressions are fitted to real and synthetic photos (`calibration`). The first weighs what the places say,
-in the size in which the pane was found and in the others: of candidates that cover one another the most probable one
-stays, its corners the mean of those that name the same pane. The second weighs the neighbours as well: panes of a
-facade have equals beside, above and below them. It gives a calibrated probability: of panes found with 0.9, nine in ten
-are there. An opening without glass looks like a pane where it is seen small; what larger sizes of the photo say of its
-middle lowers its odds.
+Three logistic regressions are fitted to real and synthetic photos (`calibration`). The first weighs what the places
+say, in the size in which the pane was found and in the others: of candidates that cover one another the most probable
+one stays, its corners the mean of those that name the same pane. The second weighs the neighbours as well: panes of a
+facade have equals beside, above and below them. The third weighs what speaks against a pane: an opening without glass
+looks like one where it is seen small; two casements look like one window, and one like two, so that candidates in its
+place are as probable; and where glass goes on beyond it, it is a part of something. It gives a probability: of panes
+found with 0.9, nine in ten are there.
 """
 
 from __future__ import annotations
@@ -25,14 +26,14 @@ from planning.base.jit import kernel
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.panels.network.predictions import FoundPanes, PhotoPrediction, SizePrediction
-from reconstruction.panels.network.votes import STRIDE, Pane, seen_area, signed_areas, weighted_median
+from reconstruction.panels.network.votes import STRIDE, Pane, inside, seen_area, signed_areas, weighted_median
 
 Array = NDArray[np.float64]
 
 COEFFICIENTS = "confidence.json"
 
 LEAST_BELIEVED = 0.5
-"""Confidence from which a pane is reported: on real photos up to a quarter of these are not there."""
+"""Confidence from which a pane is reported: on real photos up to a fifth of these are not there, but on ECP's."""
 
 LEAST_CANDIDATE = 0.12
 """Probability by the first regression from which a pane is looked at together with its neighbours."""
@@ -61,11 +62,21 @@ INTO, OUT_PX = (0.75, 0.45, 0.15), 4.0
 LARGER = 1.4, 12.0
 """A pane is looked at again where it is seen so many times as large as where it was found, from and up to."""
 
-DOUBTED, DOUBT = 0.65, 4.0
-"""Probability of the places on it, there, below which it is doubted; what its log odds lose for each 1 below.
+DOUBTED = 0.65
+"""Probability of the places on it, there, below which it is doubted. Chosen with all photos of glass, offices and
+windows in walls (CMP) in view."""
 
-From 3 to 5 likelihood rises on glass, offices and windows in walls (CMP). Chosen with all their photos in view, those
-that were not learned from, too."""
+RIVAL = 0.5
+"""Candidates that cover a pane and whose intersection over union with it is smaller are another pane in its place."""
+
+GROWN = 0.05
+"""A pane takes in what lies beside it by so much of the way from its middle: frames."""
+
+IN_WALLS, WALL = 1.6, 0.3
+"""What log odds lose where panes are windows in walls, unlike most that confidences were fitted to; the probability of
+places just outside of a photo's panes below which walls are beside them: on glass 0.28 and more, in walls up to 0.26.
+
+Chosen by every second photo of CMP, which asks for more, and by offices not learned from, which ask for less."""
 
 FIRST = (
     "share", "scatter", "log side", "log aspect", "seen", "inside", "around", "agrees", "agreeing", "in larger",
@@ -78,6 +89,9 @@ SECOND = (
     *(FIRST[i] for i in (0, 1, 3, 4, 5, 6, 7, 8, 9, 10)),
 )  # fmt: skip
 """What the second one weighs: log odds of the first, neighbours, and again what that saw."""
+
+THIRD = ("log odds", "doubt", "rival", "beyond")
+"""What the third one weighs: log odds of the second; see `third_features`."""
 
 SEEN_AGAIN = [FIRST.index(name) for name in SECOND[7:]]
 
@@ -103,25 +117,26 @@ def _probability(log_odds: Array) -> Array:
 
 
 @cache
-def regressions() -> tuple[Regression, Regression]:
-    """The two that come with the program."""
+def regressions() -> tuple[Regression, Regression, Regression]:
+    """The three that come with the program."""
     stored: dict[str, Any] = json.loads((resources.files(__package__) / "data" / COEFFICIENTS).read_text("utf-8"))
-    first, second = (
+    first, second, third = (
         Regression(np.array([stored[part]["weights"][name] for name in names]), float(stored[part]["bias"]))
-        for part, names in (("first", FIRST), ("second", SECOND))
+        for part, names in (("first", FIRST), ("second", SECOND), ("third", THIRD))
     )
-    return first, second
+    return first, second, third
 
 
 def find_panes(predictions: PhotoPrediction, monitor: Monitor = QUIET) -> FoundPanes:
     """Panes of a photo, the most probable first, whatever little probability they have."""
     monitor.report(say("look for panes"), len(predictions.by_size), len(predictions.by_size))
     candidates = candidates_of(predictions)
-    first, second = regressions()
+    first, second, third = regressions()
     features = first_features(candidates)
     joined = candidates.joined(first.probability(features), features)
     odds = second.log_odds(second_features(joined))
-    probabilities = _probability(odds - DOUBT * np.maximum(0.0, DOUBTED - seen_larger(joined, predictions)))
+    odds = third.log_odds(third_features(joined, odds, predictions)) - IN_WALLS * share_of_wall(joined)
+    probabilities = _probability(odds)
     order = np.argsort(-probabilities)
     panes = tuple(replace(joined.panes[i], confidence=float(probabilities[i])) for i in order)
     return FoundPanes(panes, predictions)
@@ -178,7 +193,9 @@ class Candidates:
             weight = (probability[same] / sigma[same]) ** 2
             corners = np.einsum("n,nij->ij", weight / weight.sum(), self.quads[same])
             panes.append(replace(self.panes[i], corners_px=corners))
-        return Joined(panes, probability[chosen], features[chosen], [self.predictions[i] for i in chosen])
+        others = np.where(conflicts & (iou < RIVAL), probability, 0.0)
+        rivals = others[chosen].max(axis=1, initial=0.0)
+        return Joined(panes, probability[chosen], features[chosen], [self.predictions[i] for i in chosen], rivals)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -191,12 +208,15 @@ class Joined:
         What the first regression gives each, shape (n,), and what it weighed, (n, 13).
     predictions
         The one that each was found in.
+    rivals
+        Probability of the most probable candidate that is another pane in its place, shape (n,).
     """
 
     panes: Sequence[Pane]
     probability: Array
     features: Array
     predictions: Sequence[SizePrediction]
+    rivals: Array
 
 
 def candidates_of(predictions: PhotoPrediction) -> Candidates:
@@ -255,7 +275,7 @@ def first_features(candidates: Candidates) -> Array:
         seen_area(quad * look.scale, look.size_px) / (area * look.scale**2)
         for quad, look, area in zip(quads, candidates.predictions, areas, strict=True)
     ]
-    inside, around = _places(candidates)
+    within, around = _places(candidates)
     return np.column_stack(
         [
             share,
@@ -263,7 +283,7 @@ def first_features(candidates: Candidates) -> Array:
             np.log(np.sqrt(areas) * scale),
             np.log(wide / high),
             seen,
-            inside,
+            within,
             around,
             (elsewhere * trust).max(axis=1),
             ((elsewhere > 0.5) * trust).sum(axis=1),
@@ -277,14 +297,11 @@ def first_features(candidates: Candidates) -> Array:
 
 def _places(candidates: Candidates) -> tuple[Array, Array]:
     """Mean probability of places inside and just outside of each candidate, in its look; 0.5 where none is seen."""
-    inside, around = np.full(len(candidates.panes), 0.5), np.full(len(candidates.panes), 0.5)
+    within, around = np.full(len(candidates.panes), 0.5), np.full(len(candidates.panes), 0.5)
     for i, (quad, look) in enumerate(zip(candidates.quads, candidates.predictions, strict=True)):
-        middle, outline = _outline(quad, look)
-        distance = np.maximum(np.linalg.norm(outline, axis=1, keepdims=True), 1e-6)
-        beyond = outline * (1.0 + OUT_PX / STRIDE / distance)
-        inside[i] = _inside(quad, look)
-        around[i] = _mean_at(look.probability, middle + beyond)
-    return inside, around
+        within[i] = _inside(quad, look)
+        around[i] = _mean_at(look.probability, _just_outside(quad, look))
+    return within, around
 
 
 ALONG = np.linspace(0.0, 1.0, 8)[:-1]
@@ -297,6 +314,13 @@ def _outline(quad: Array, look: SizePrediction) -> tuple[Array, Array]:
     towards = np.roll(corners, -1, axis=0) - corners
     middle = corners.mean(axis=0)
     return middle, (corners[:, None] + ALONG[:, None] * towards[:, None]).reshape(-1, 2) - middle
+
+
+def _just_outside(quad: Array, look: SizePrediction) -> Array:
+    """Points around a quadrilateral in a look's places, shape (28, 2)."""
+    middle, outline = _outline(quad, look)
+    distance = np.maximum(np.linalg.norm(outline, axis=1, keepdims=True), 1e-6)
+    return np.asarray(middle + outline * (1.0 + OUT_PX / STRIDE / distance))
 
 
 def _inside(quad: Array, look: SizePrediction) -> float:
@@ -374,3 +398,49 @@ def second_features(joined: Joined) -> Array:
 def _cross(along: Array, apart: Array) -> Array:
     """Cross products of directions, shape (n, 2), with where others lie from there, shape (n, n, 2)."""
     return np.asarray(along[:, None, 0] * apart[..., 1] - along[:, None, 1] * apart[..., 0])
+
+
+def third_features(joined: Joined, log_odds: Array, predictions: PhotoPrediction) -> Array:
+    """Of each pane, shape (n, 4), as `THIRD` names them.
+
+    Parameters
+    ----------
+    log_odds
+        By the second regression, shape (n,).
+    """
+    doubt = np.maximum(0.0, DOUBTED - seen_larger(joined, predictions))
+    return np.column_stack([log_odds, doubt, joined.rivals, glass_beyond(joined)])
+
+
+def share_of_wall(joined: Joined) -> float:
+    """How far the panes of a photo stand in a wall, 0 to 1: 0 where glass is beside glass."""
+    if not len(joined.panes):
+        return 0.0
+    around = joined.features[:, FIRST.index("around")]
+    return float(np.maximum(0.0, 1.0 - np.average(around, weights=joined.probability**2) / WALL))
+
+
+def glass_beyond(joined: Joined) -> Array:
+    """Mean probability of places just outside each pane that no other pane explains, shape (n,); 0 where none is seen.
+
+    A place on another pane counts by how improbable that one is.
+    """
+    quads = np.array([pane.corners_px for pane in joined.panes]).reshape(-1, 4, 2)
+    middles = quads.mean(axis=1, keepdims=True)
+    grown = middles + (1.0 + GROWN) * (quads - middles)
+    low, high = grown.min(axis=1), grown.max(axis=1)
+    beyond = np.zeros(len(quads))
+    for i, (quad, look) in enumerate(zip(quads, joined.predictions, strict=True)):
+        places = _just_outside(quad, look)
+        seen = (places >= 0.0).all(axis=1) & (places < look.probability.shape[::-1]).all(axis=1)
+        if not seen.any():
+            continue
+        column, row = places[seen].astype(int).T
+        points = places[seen] * STRIDE / look.scale
+        free = np.ones(len(points))
+        touching = (low < points.max(axis=0)).all(axis=1) & (high > points.min(axis=0)).all(axis=1)
+        for k in np.flatnonzero(touching):
+            if k != i:
+                free[inside(grown[k], points)] *= 1.0 - joined.probability[k]
+        beyond[i] = float((look.probability[row, column] * free).mean())
+    return beyond
