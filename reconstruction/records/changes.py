@@ -69,10 +69,14 @@ def query_of(text: str) -> str | None:
 
 
 def _spellings(word: str) -> list[str]:
-    """A word as texts may have it: the index knows letters without case and accents, but not that ß is a double s."""
+    """A word as texts may have it: the index knows letters without case and accents, but not that ß is a double s.
+
+    A single s at the end may be the half of one that is being typed.
+    """
     first, *others = _DOUBLE_S.split(word)
     choices = [("ss", "ß")] * len(others[:MAX_SPELLED]) + [("ss",)] * len(others[MAX_SPELLED:])
-    return [first + "".join(map("".join, zip(each, others, strict=True))) for each in itertools.product(*choices)]
+    found = [first + "".join(map("".join, zip(each, others, strict=True))) for each in itertools.product(*choices)]
+    return found + [f"{each[:-1]}ß" for each in found if each.endswith(("s", "S")) and not each.endswith("ss")]
 
 
 class Changes:

@@ -114,6 +114,13 @@ def test_search_finds_umlauts_and_sharp_s_however_they_are_written(book, words):
     assert {hit.name for hit in search(book, words)} == {"A-0000", "B-0001"}
 
 
+def test_what_is_found_by_a_word_is_found_while_it_is_typed(book):
+    book.put(Inspection(PANES[0], "2026-01-01", "F. Weiß"))
+    for word in ("weiss", "WEISS", "weiß"):
+        for n in range(1, len(word) + 1):
+            assert len(search(book, word[:n])) == 1, word[:n]
+
+
 def test_a_double_s_is_sought_as_sharp_s_too_however_many_there_are(book):
     book.put(Inspection(PANES[0], "2026-01-01", note="Flußschloßgäßchen"))
     assert len(search(book, "flussschlossgässchen")) == 1
