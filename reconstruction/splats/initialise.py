@@ -343,9 +343,9 @@ def _placed(
     kept = kept[np.argsort(~seen.is_known[kept], kind="stable")]
     points, wanted = seen.points_enu_m[kept], spacing_px * seen.pixel_m[kept]
     normals = seen.normals_enu[kept].copy()
-    is_loose = ~normals.any(axis=1)
+    is_loose = np.asarray(~normals.any(axis=1))
     normals[is_loose] = plane_normals(points[is_loose], scene.points_enu_m)
-    spacings = spacings_of(points, 0.7 * wanted, 1.5 * wanted)
+    spacings = spacings_of(points, 0.7 * wanted, 1.5 * wanted, is_loose)
     around = surfels_between(points, normals, spacings, seen.gaps_m[kept], seen.edges_enu[kept])
     return joined([glass, around]), len(glass) + int(seen.is_known[kept].sum())
 

@@ -230,12 +230,27 @@ def thinned(points_enu_m: Array, spacings_m: Array, gaps_m: Array) -> NDArray[np
     return np.sort(kept[~crowded.any(axis=1)])
 
 
-def spacings_of(points_enu_m: Array, least_m: Array, most_m: Array) -> Array:
-    """Mean distance to the next `NEIGHBOURS` points, kept between two bounds, shape (n,)."""
+def spacings_of(points_enu_m: Array, least_m: Array, most_m: Array, is_loose: NDArray[np.bool_]) -> Array:
+    """Mean distance to the next `NEIGHBOURS` points, kept between two bounds, shape (n,).
+
+    Loose points may be sparser than what is wanted of surfaces: they reach their neighbours, so that walls between them
+    are closed, but no more than `SPARSEST` times as far as usual ones do.
+
+    Parameters
+    ----------
+    is_loose
+        Which points are of no known surface, shape (n,).
+    """
     if len(points_enu_m) <= NEIGHBOURS:
         return most_m.copy()
-    distances = np.asarray(cKDTree(points_enu_m).query(points_enu_m, NEIGHBOURS + 1)[0])
-    return np.asarray(np.clip(distances[:, 1:].mean(axis=1), least_m, most_m))
+    distances = np.asarray(cKDTree(points_enu_m).query(points_enu_m, NEIGHBOURS + 1)[0])[:, 1:].mean(axis=1)
+    if is_loose.any():
+        usual_m = float(np.median(distances[is_loose]))
+        most_m = np.where(is_loose, np.maximum(most_m, SPARSEST * usual_m), most_m)
+    return np.asarray(np.clip(distances, least_m, most_m))
+
+
+SPARSEST = 4.0
 
 
 def plane_normals(points_enu_m: Array, cloud_enu_m: Array) -> Array:

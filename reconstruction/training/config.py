@@ -194,7 +194,8 @@ class TrainConfig:
         Pixels of a photo that a step looks at, at most: a random window of larger photos. Where a time limit leaves
         room for too few steps, windows are smaller: `trainer.ENOUGH_STEPS`.
     reduce
-        Pixels of a photo, along each side, that one is made of before it is learned from.
+        Pixels of a photo, along each side, that one is made of before it is learned from; 0 for as many as leave some
+        windows of it: `start.usual_reduce`.
     raster
         Settings of the rasteriser, but for its threads. Splats are antialiased, other than in 2DGS and 3DGS: frames are
         finer than a pixel in many photos (`python -m tests.tables --only 3b`).
@@ -231,7 +232,7 @@ class TrainConfig:
     degree: int = parameter(3, least=0, most=3)
     degree_every: float = parameter(0.0, least=0.0, most=1.0)
     window_px: int = parameter(256 * 192, least=1)
-    reduce: int = parameter(1, least=1)
+    reduce: int = parameter(0, least=0)
     raster: RasterSettings = ANTIALIASED
     losses: LossWeights = field(default_factory=LossWeights)
     rates: Rates = field(default_factory=Rates)

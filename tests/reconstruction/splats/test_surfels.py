@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 from reconstruction.splats.surfels import (
+    SPARSEST,
     panel_proximity,
     panel_surfels,
     plane_normals,
@@ -118,7 +119,21 @@ def test_points_without_a_plane_have_a_normal_all_the_same(cloud):
 
 def test_spacings_are_mean_distances_within_their_bounds():
     points = np.column_stack([np.arange(10.0), np.zeros(10), np.zeros(10)])
-    found = spacings_of(points, np.full(10, 0.1), np.full(10, 1.5))
+    found = spacings_of(points, np.full(10, 0.1), np.full(10, 1.5), np.zeros(10, bool))
     assert found[5] == pytest.approx(4.0 / 3.0)
     assert found[0] == pytest.approx(1.5)
-    assert spacings_of(points[:2], np.full(2, 0.1), np.full(2, 1.5)).tolist() == [1.5, 1.5]
+    assert spacings_of(points[:2], np.full(2, 0.1), np.full(2, 1.5), np.zeros(2, bool)).tolist() == [1.5, 1.5]
+
+
+def test_loose_points_reach_their_neighbours_however_finely_photos_see_them():
+    """Of a cloud that is sparser than photos are fine, no dots are left with gaps between."""
+    y, z = np.meshgrid(np.arange(12.0), np.arange(12.0))
+    wall = np.column_stack([np.zeros(144), y.ravel(), z.ravel()])
+    lost = np.array([[0.0, 500.0, 0.0]])
+    points, finest = np.concatenate([wall, lost]), np.full(145, 0.01)
+    found = spacings_of(points, 0.7 * finest, 1.5 * finest, np.ones(145, bool))
+    assert found[:144].min() >= 1.0
+    assert found[:144].max() < 1.5
+    assert found[144] == pytest.approx(SPARSEST * np.median(found[:144]), rel=0.05)  # a mismatch far out stays small
+    known = spacings_of(points, 0.7 * finest, 1.5 * finest, np.zeros(145, bool))
+    assert known == pytest.approx(0.015)

@@ -2,6 +2,7 @@
 
 import shutil
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,8 +18,8 @@ from reconstruction.light.photo_set import read_photo_set
 from reconstruction.splats.splats import NO_PANEL
 from reconstruction.training import start as start_module
 from reconstruction.training.config import TrainConfig
-from reconstruction.training.start import SeparateLight, start_model
-from tests.reconstruction.light.synthetic_folder import far
+from reconstruction.training.start import SeparateLight, start_model, usual_reduce
+from tests.reconstruction.light.synthetic_folder import LENS, cameras, far
 from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 WALL_Y_M = 0.5
@@ -165,3 +166,29 @@ def test_light_apart_is_as_asked_and_nothing_is_tried_for_it(tmp_path, monkeypat
     (decision,), name = light_apart(tmp_path / "same", replace(ASKED, light_apart=setting), monkeypatch)
     assert (decision.on, decision.decided_by) == (is_apart, "user")
     assert (name != "harmonics") == is_apart
+
+
+@pytest.mark.parametrize(
+    ("size_px", "window_px", "wanted"),
+    [
+        ((40, 30), 256 * 192, 1),
+        ((800, 600), 96 * 72, 1),  # windows of quick looks are small, and photos are not made as small as these want
+        ((1024, 768), 256 * 192, 2),
+        ((1296, 1936), 256 * 192, 3),
+        ((5280, 3956), 256 * 192, 10),
+        ((5280, 3956), 768 * 576, 3),
+    ],
+)
+def test_photos_are_made_as_small_as_some_windows_cover(size_px, window_px, wanted):
+    width, height = size_px
+    photos = cameras(Path(), 2, lens=LENS) + cameras(Path(), 1, lens=LENS.scaled(width, height))
+    assert usual_reduce(photos, window_px) == wanted
+
+
+@pytest.mark.slow
+def test_large_photos_are_learned_from_smaller_unless_it_is_said_how(tmp_path):
+    write_data_set(tmp_path / "large", 3, LENS.scaled(1040, 780))
+    config = TrainConfig(method="2dgs", n_splats=100, max_splats=100)
+    source = read_photo_set(tmp_path / "large")
+    assert start_model(source, config).config.reduce == 2
+    assert start_model(source, replace(config, reduce=1)).config.reduce == 1
