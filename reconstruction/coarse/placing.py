@@ -34,6 +34,11 @@ Array = NDArray[np.float64]
 
 ScaleFrom = Literal["control points", "positions", "stated distances", "height of eyes", "height of flight"]
 
+
+class SizeUnknownError(InputError):
+    """Nothing says how large a model is, and there is nothing to guess it by."""
+
+
 GUESSED = ("height of eyes", "height of flight")
 """Where a size is from that nothing says."""
 
@@ -344,7 +349,7 @@ def _stated(
     elif above is not None and above.height > 0.0:
         scale, scale_from = above.metres / above.height, above.scale_from
     else:
-        raise InputError(
+        raise SizeUnknownError(
             say(
                 "nothing says how large the model is: the photos have no positions, and nothing was found below them; "
                 "measure how far apart two photos were taken, or survey control points, and state it"

@@ -11,7 +11,13 @@ from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.application.context import ApplicationContext
 from groundstation.services.jobs.runner import JobContext
-from groundstation.services.photos.coarse import SPARSE, CoarseFiles, coarse_files_in_process
+from groundstation.services.photos.coarse import (
+    SPARSE,
+    CoarseFiles,
+    UnsizedCoarse,
+    coarse_files_in_process,
+    lacks_size,
+)
 from groundstation.services.photos.found_panels import (
     AppliedPoses,
     PanelDraft,
@@ -89,6 +95,7 @@ class PhotosController(QObject):
         self._context = context
         self.folder: Path | None = None
         self._rendering: Path | None = None
+        self.unsized: UnsizedCoarse | None = None
         self.colmap: Path | None = None
         self.intake: PhotoIntake | None = None
         self.cards: tuple[PhotoCard, ...] = ()
@@ -148,15 +155,22 @@ class PhotosController(QObject):
             return self.folder
         return None if project is None else project / PHOTOS_FOLDER
 
-    def make_coarse(self, photos: Path, out: Path) -> None:
-        """Make a site of a folder of photos alone, open it, and read the photos over it."""
+    def make_coarse(self, photos: Path, out: Path, distances: tuple[tuple[str, str, float], ...] = ()) -> None:
+        """Make a site of a folder of photos alone, open it, and read the photos over it.
+
+        Parameters
+        ----------
+        distances
+            Names of two photos, and the metres between where they were taken.
+        """
 
         def work(context: JobContext) -> tuple[CoarseFiles, SiteModel]:
-            files = context.run_in_process(coarse_files_in_process, CoarseRequest(photos, out))
+            files = context.run_in_process(coarse_files_in_process, CoarseRequest(photos, out, distances=distances))
             return files, read_input_site(files.site)
 
         def done(result: tuple[CoarseFiles, SiteModel]) -> None:
             files, model = result
+            self.unsized = UnsizedCoarse(photos, out) if files.is_guessed else None
             for found in files.findings:
                 self._context.say(found.severity, self._context.localized(found.message))
             document = with_new_site(self._context.document, model)
@@ -169,7 +183,11 @@ class PhotosController(QObject):
             )
             self.read(photos, out / SPARSE)
 
-        self._start(self.tr("Make a coarse model"), work, done)
+        def failed(error: BaseException) -> None:
+            self.unsized = UnsizedCoarse(photos, out) if lacks_size(error) else None
+            self.stateChanged.emit()
+
+        self._start(self.tr("Make a coarse model"), work, done, failed)
 
     def read(self, folder: Path, colmap: Path | None = None) -> None:
         """Read a folder of photos over the site.
@@ -433,8 +451,14 @@ class PhotosController(QObject):
 
         self._start(self.tr("Solve panels"), work, done)
 
-    def _start(self, name: str, work: Callable[[JobContext], object], done: Callable[..., None]) -> None:
-        self._busy.add(self._context.start(name, work, done).id)
+    def _start(
+        self,
+        name: str,
+        work: Callable[[JobContext], object],
+        done: Callable[..., None],
+        failed: Callable[[BaseException], None] | None = None,
+    ) -> None:
+        self._busy.add(self._context.start(name, work, done, failed).id)
         self.stateChanged.emit()
 
     def _jobs_changed(self) -> None:

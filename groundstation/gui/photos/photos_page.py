@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,6 +12,8 @@ from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtGui import QAction, QCloseEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
+    QDialog,
+    QDialogButtonBox,
     QGridLayout,
     QHBoxLayout,
     QHeaderView,
@@ -34,11 +37,11 @@ from groundstation.gui.photos.photo_store import PhotoStore
 from groundstation.gui.photos.photos_controller import PhotosController
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.findings_list import FindingsList
-from groundstation.gui.widgets.inputs import ChoiceBox
+from groundstation.gui.widgets.inputs import ChoiceBox, Form, LengthBox
 from groundstation.gui.widgets.questions import Answer, Questions
 from groundstation.gui.widgets.scrolling import scrolled, split
 from groundstation.services.jobs.runner import JobContext
-from groundstation.services.photos.coarse import begun_coarse
+from groundstation.services.photos.coarse import begun_coarse, photo_names
 from groundstation.services.photos.found_panels import PanelDraft
 from groundstation.services.photos.grid_edits import (
     add_line,
@@ -239,6 +242,51 @@ class PoseBox(QWidget):
         return " ".join(parts)
 
 
+LEAST_APART_M, MOST_APART_M = 0.1, 5000.0
+"""That two photos are taken from each other."""
+
+
+class DistanceDialog(QDialog):
+    """Asks how far apart two photos were taken."""
+
+    def __init__(self, names: Sequence[str], units: UnitSystem, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setWindowTitle(self.tr("State a distance"))
+        about = QLabel(
+            self.tr("Two photos that were taken far apart, and their distance: it says how large the building is.")
+        )
+        about.setWordWrap(True)
+        self.one, self.other = ChoiceBox(), ChoiceBox()
+        self.length = LengthBox(LEAST_APART_M, MOST_APART_M, 0.5, units, 2)
+        for box in (self.one, self.other):
+            for name in names:
+                box.addItem(name, name)
+        self.other.setCurrentIndex(len(names) - 1)
+        self.length.setValue(10.0)
+        form = Form()
+        form.addRow(about)
+        form.addRow(self.tr("From photo"), self.one)
+        form.addRow(self.tr("To photo"), self.other)
+        form.addRow(self.tr("Distance"), self.length)
+        self._buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel)
+        self._buttons.accepted.connect(self.accept)
+        self._buttons.rejected.connect(self.reject)
+        layout = QVBoxLayout(self)
+        layout.addLayout(form)
+        layout.addWidget(self._buttons)
+        self.one.currentIndexChanged.connect(self._show_state)
+        self.other.currentIndexChanged.connect(self._show_state)
+        self._show_state()
+
+    def value(self) -> tuple[str, str, float]:
+        """Names of the photos, and metres."""
+        return str(self.one.currentData()), str(self.other.currentData()), self.length.value()
+
+    def _show_state(self) -> None:
+        is_possible = self.one.currentIndex() != self.other.currentIndex()
+        self._buttons.button(QDialogButtonBox.StandardButton.Ok).setEnabled(is_possible)
+
+
 SIDE_PX, DETAIL_PX = 250, 320
 """First widths beside the photo, at 1280 pixels."""
 
@@ -256,6 +304,7 @@ class PhotosPage(QObject):
         self.trials, self.sightings, self.poses = TrialChart(), PanelSightings(), PoseBox(self.controller)
         self.read, self.choose = QPushButton(self.tr("Read photos")), QPushButton(self.tr("Choose folder ..."))
         self.coarse = QPushButton(self.tr("From photos alone ..."))
+        self.distance = QPushButton(self.tr("State a distance ..."))
         self.find, self.use = QPushButton(self.tr("Find panels")), QPushButton(self.tr("Use these panels"))
         self.data_set = QPushButton(self.tr("Make data set ..."))
         self.next_battery = QPushButton(self.tr("Plan the next battery"))
@@ -323,6 +372,9 @@ class PhotosPage(QObject):
         self.coarse.setToolTip(
             self.tr("Make a coarse model and a site of the photos of a first flight: poses, walls, roofs and ground")
         )
+        self.distance.setToolTip(
+            self.tr("How far apart two photos were taken: the coarse model, whose size is a guess, gets its true one")
+        )
         self.render.setToolTip(
             self.tr("Make the photos that the simulated flight took, with what its panes mirror; wide ones take hours")
         )
@@ -332,6 +384,7 @@ class PhotosPage(QObject):
         self.width.setCurrentIndex(self.width.findData(USUAL_WIDTH_PX))
         self.width.setAccessibleName(self.tr("Width of rendered photos"))
         top.addWidget(self.coarse)
+        top.addWidget(self.distance)
         top.addWidget(self.render)
         top.addWidget(self.width)
         top.addWidget(self.choose)
@@ -385,6 +438,7 @@ class PhotosPage(QObject):
     def _connect(self) -> None:
         controller, context, view = self.controller, self._context, self.pane.view
         self.coarse.clicked.connect(self._make_coarse)
+        self.distance.clicked.connect(self._state_distance)
         self.choose.clicked.connect(self._choose_folder)
         self.read.clicked.connect(self._read)
         self.render.clicked.connect(self._render)
@@ -446,6 +500,17 @@ class PhotosPage(QObject):
         out = self.questions.new_folder(window, self.tr("Folder for the coarse model"), proposed)
         if out is not None:
             self.controller.make_coarse(photos, out)
+
+    def _state_distance(self) -> None:
+        """Ask how far apart two photos were taken, and make the coarse model anew with what was found."""
+        unsized = self.controller.unsized
+        if unsized is None:
+            return
+        dialog = DistanceDialog(photo_names(unsized.photos), self._context.units, self._shared_view.window())
+        is_stated = dialog.exec() == QDialog.DialogCode.Accepted
+        dialog.deleteLater()
+        if is_stated:
+            self.controller.make_coarse(unsized.photos, unsized.out, (dialog.value(),))
 
     def _read(self) -> None:
         folder = self.controller.usual_folder()
@@ -587,6 +652,8 @@ class PhotosPage(QObject):
         self.folder.setText("" if folder is None else self.tr("Folder: {0}").format(_short(folder)))
         self.folder.setToolTip("" if folder is None else str(folder))
         self.coarse.setEnabled(not controller.is_busy)
+        self.distance.setVisible(controller.unsized is not None)
+        self.distance.setEnabled(not controller.is_busy)
         for widget in (self.render, self.width):
             widget.setVisible(self._context.milestones.simulated is not None)
             widget.setEnabled(not controller.is_busy)

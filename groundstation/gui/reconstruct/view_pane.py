@@ -495,7 +495,10 @@ class ViewPane(QWidget):
 
     def _note(self, left: Subject | None) -> str:
         if self._controller.card is None:
-            return self.tr("Choose a data set, or make one of the flight's photos on the Photos tab.")
+            return self.tr(
+                "Choose a data set, or a folder of photos with their COLMAP or nerfstudio model; or make one of the "
+                "flight's photos on the Photos tab."
+            )
         if left is None:
             return self.tr("A photo of the data set. The model is shown here once it learns.")
         if self._problem:

@@ -21,7 +21,7 @@ from planning.base.json_file import plain_values, read_json, write_atomically, w
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.geo.mesh import TriangleMesh, box_mesh, empty_mesh, join, ply_bytes
-from planning.photos.folder import read_photos
+from planning.photos.folder import SUFFIXES, read_photos
 from planning.site.file import site_bytes
 from planning.site.importing.importer import site_of_facades
 from planning.site.importing.options import ImportOptions
@@ -32,7 +32,7 @@ from reconstruction.coarse.build import SETTINGS, CoarseModel, CoarseParameters,
 from reconstruction.coarse.control_and_camera import read_control_points, read_lens
 from reconstruction.coarse.inputs import Stated
 from reconstruction.coarse.parameters import CoarseRequest
-from reconstruction.coarse.placing import GUESSED
+from reconstruction.coarse.placing import GUESSED, SizeUnknownError
 from reconstruction.dataset.prepare import DATA_SET as FINISHED
 from reconstruction.dataset.prepare import UNFINISHED
 from reconstruction.light.photo_set import SCENE_FILE
@@ -62,6 +62,14 @@ LEAST_ZONE_M2, ROUNDED_M = 4.0, 0.5
 
 
 @dataclass(frozen=True, slots=True)
+class UnsizedCoarse:
+    """A coarse model whose size is a guess, or not known at all, of a folder of photos; and where it lies."""
+
+    photos: Path
+    out: Path
+
+
+@dataclass(frozen=True, slots=True)
 class CoarseFiles:
     """What was made, in numbers.
 
@@ -79,6 +87,11 @@ class CoarseFiles:
     report: dict[str, Any]
     decision: Decision
     findings: tuple[Finding, ...]
+
+    @property
+    def is_guessed(self) -> bool:
+        """Whether its size is."""
+        return self.report["scale_guessed_within_factor"] is not None
 
 
 def coarse_files(request: CoarseRequest, monitor: Monitor = QUIET) -> CoarseFiles:
@@ -125,6 +138,11 @@ def coarse_files_in_process(
     return coarse_files(request, monitor)
 
 
+def lacks_size(error: BaseException) -> bool:
+    """Whether a coarse model was not made because nothing says how large it is."""
+    return isinstance(error, SizeUnknownError)
+
+
 def begun_coarse(photos: Path, beside: Path) -> Path | None:
     """The folder of a coarse model of these photos that was not finished, the newest beside another; None for none."""
     begun = list(beside.parent.glob(f"*/{KEPT}/{SETTINGS}"))
@@ -135,6 +153,12 @@ def begun_coarse(photos: Path, beside: Path) -> Path | None:
             if is_of_these and not (folder / REPORT_FILE).exists():
                 return folder
     return None
+
+
+def photo_names(photos: Path) -> tuple[str, ...]:
+    """Of the photos of a folder, as distances between them name them."""
+    paths = (path for path in photos.rglob("*") if path.suffix.lower() in SUFFIXES)
+    return tuple(sorted(path.relative_to(photos).as_posix() for path in paths))
 
 
 def _write(out: Path, coarse: CoarseModel) -> tuple[Finding, ...]:

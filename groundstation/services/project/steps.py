@@ -322,7 +322,13 @@ def _photos(now: Milestones) -> Guidance:
         return Guidance(False, "", further, say("Read photos"), Act.READ_PHOTOS)
     done = say("photos read: {}", now.n_photos)
     if now.n_panels == 0:
-        return Guidance(False, done, say("find the panels in them"), say("Find panels"), Act.FIND_PANELS)
+        return Guidance(
+            False,
+            done,
+            say("find the panels in them, or make the data set of a building without any"),
+            say("Find panels"),
+            Act.FIND_PANELS,
+        )
     return Guidance(
         False, done, say("make the data set that a model learns from"), say("Make data set"), Act.MAKE_DATA_SET
     )

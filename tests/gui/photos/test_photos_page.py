@@ -6,10 +6,13 @@ import json
 import shutil
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QDialogButtonBox, QLineEdit
 
+from groundstation.services.photos.coarse import UnsizedCoarse
 from groundstation.services.photos.intake import PhotoMark
 from groundstation.services.project.document import Document, PlanEntry
 from groundstation.services.project.steps import Act
@@ -23,7 +26,7 @@ from planning.viewpoints.prepare import prepare
 from reconstruction.scenes.photos.flight_views import planned_shots
 from reconstruction.scenes.world.bundled import bundled_scene
 from reconstruction.tradeoff.flight_worth import photograph
-from tests.gui.driving import choose, click_on, clicked, escape, turn_until, turn_until_idle
+from tests.gui.driving import choose, click_on, clicked, escape, press, turn_until, turn_until_idle, type_into
 from tests.gui.photos.photos_tab import PhotosTab
 from tests.services.photo_cases import site_model
 
@@ -242,6 +245,43 @@ def test_a_coarse_model_that_was_begun_goes_on_in_its_folder(page, controller, f
     assert "Folder for the coarse model" in words[1]
 
 
+def stated(one, other, metres):
+    """A step: say how far apart two photos were taken."""
+
+    def step(dialog):
+        for box, number in ((dialog.one, one), (dialog.other, one)):
+            box.setFocus()
+            QTest.keyClick(box, Qt.Key.Key_Home)
+            for _ in range(number):
+                QTest.keyClick(box, Qt.Key.Key_Down)
+        assert (dialog.one.currentIndex(), dialog.other.currentIndex()) == (one, one)
+        assert not dialog.findChild(QDialogButtonBox).button(QDialogButtonBox.StandardButton.Ok).isEnabled()
+        for _ in range(other - one):
+            QTest.keyClick(dialog.other, Qt.Key.Key_Down)
+        type_into(dialog.length.findChild(QLineEdit), str(metres))
+        press("OK")(dialog)
+
+    return step
+
+
+def test_a_distance_is_asked_for_where_the_size_is_not_known(page, controller, folder, tmp_path):
+    few = tmp_path / "few"
+    few.mkdir()
+    for path in sorted(folder.iterdir())[:2]:
+        shutil.copy(path, few)
+    assert page.tab.distance.isHidden()
+    page.tab.controller.unsized = UnsizedCoarse(few, tmp_path / "tower")
+    page.tab.controller.stateChanged.emit()
+    with clicked(escape):
+        click_on(controller.window, page.tab.distance)
+    assert not (tmp_path / "tower").exists()
+    with clicked(stated(0, 1, 7.5)):
+        click_on(controller.window, page.tab.distance)
+    page.idle()
+    assert any("at least 3 photos, got 2" in message.text for message in page.messages)
+    assert page.tab.distance.isHidden()  # that is another fault
+
+
 @pytest.mark.slow
 def test_photos_alone_become_a_site_by_one_button(page, controller, shared_data, tmp_path):
     pytest.importorskip("pycolmap", reason="pycolmap is not installed (pip install .[colmap])")
@@ -257,6 +297,14 @@ def test_photos_alone_become_a_site_by_one_button(page, controller, shared_data,
     assert controller.context.document.site.site.name == "coarse"
     assert len(page.tab.controller.intake.photos) == 6
     assert page.tab.data_set.isEnabled()
+    assert any("the size is a guess" in message.text for message in page.messages)
+    with clicked(stated(0, 5, 7.0)):
+        click_on(controller.window, page.tab.distance)
+    turn_until_idle(page.application, controller, 400.0)
+    page.idle()
+    first, last = (page.tab.controller.intake.photos[number].pose.position_enu_m for number in (0, 5))
+    assert np.linalg.norm(last - first) == pytest.approx(7.0, abs=0.05)
+    assert page.tab.distance.isHidden()
 
 
 @pytest.mark.slow
