@@ -41,11 +41,25 @@ LEAST_M = 2.0
 
 def places_of(training: Mapping[str, Any]) -> Array:
     """Where a scene's photos were taken, ENU, shape (k, 3); of models that do not know it none."""
+    return _vectors(training, "places_enu_m")
+
+
+def usual_look(training: Mapping[str, Any]) -> tuple[Array, Array] | None:
+    """Place and forward direction, ENU, of the photo taken in the midst of the others; None where that is not known."""
+    places, forwards = places_of(training), _vectors(training, "forwards_enu")
+    if not len(places) or places.shape != forwards.shape:
+        return None
+    number = int(np.argmin(np.linalg.norm(places - np.median(places, axis=0), axis=1)))
+    length = float(np.linalg.norm(forwards[number]))
+    return (places[number], forwards[number] / length) if length > 0.0 else None
+
+
+def _vectors(training: Mapping[str, Any], name: str) -> Array:
     try:
-        places = np.asarray(training.get("places_enu_m", ()), np.float64).reshape(-1, 3)
+        found = np.asarray(training.get(name, ()), np.float64).reshape(-1, 3)
     except (TypeError, ValueError):
         return np.zeros((0, 3))
-    return places[np.isfinite(places).all(axis=1)]
+    return found[np.isfinite(found).all(axis=1)]
 
 
 def outward(corners_enu_m: Array) -> Array | None:

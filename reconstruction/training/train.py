@@ -17,6 +17,7 @@ from planning.base.errors import InputError, OperationCancelled
 from planning.base.json_file import to_record
 from planning.base.messages import say
 from planning.base.progress import QualityPoint
+from reconstruction.base.cameras import PosedPhoto
 from reconstruction.light.photo_set import PhotoSet, read_photo_set
 from reconstruction.light.training import torch_threads
 from reconstruction.metrics.image_metrics import Quality
@@ -24,7 +25,7 @@ from reconstruction.splats.rasterising.views import View
 from reconstruction.training.callbacks import Callbacks, HeldOut
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.devices import check_device, drawn_by_card
-from reconstruction.training.model.record import ModelRecord, empty_model, light_record, site_record
+from reconstruction.training.model.record import ModelRecord, Vec3, empty_model, light_record, site_record
 from reconstruction.training.model.saved import TrainedModel
 from reconstruction.training.model.score import quality_of, score_views
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
@@ -148,7 +149,7 @@ def _started(
         start.extent_m,
         start.decisions if by_card is None else (*start.decisions, by_card),
         start.moves,
-        tuple(tuple(photo.pose.position_enu_m.tolist()) for photo in moved(start.learned, start.moves)),
+        *_looks(moved(start.learned, start.moves)),
     )
     with ExitStack() as closing:
         photos, shown = _photos(source, record, closing)
@@ -344,8 +345,16 @@ def _with_findings(record: ModelRecord, trainer: Trainer, source: PhotoSet) -> M
     if not decision.on:
         return record
     moves = one_after_other(record.moves, trainer.poses.moves())
-    cameras = [photo.pose.position_enu_m for photo in moved(source.named(record.learned), moves)]
-    return replace(record, moves=moves, places_enu_m=tuple(tuple(place.tolist()) for place in cameras))
+    places, forwards = _looks(moved(source.named(record.learned), moves))
+    return replace(record, moves=moves, places_enu_m=places, forwards_enu=forwards)
+
+
+def _looks(photos: Sequence[PosedPhoto]) -> tuple[tuple[Vec3, ...], tuple[Vec3, ...]]:
+    """Where photos were taken, and in which directions they look, ENU."""
+    poses = [photo.pose for photo in photos]
+    vectors = [pose.position_enu_m for pose in poses], [pose.forward_enu for pose in poses]
+    places, forwards = (tuple((float(x), float(y), float(z)) for x, y, z in each) for each in vectors)
+    return places, forwards
 
 
 def _last_look(trainer: Trainer, trained: TrainedModel, source: PhotoSet, watching: Callbacks) -> Quality | None:

@@ -28,6 +28,7 @@ from reconstruction.objects.store import (
     outward,
     places_of,
     standoff_m,
+    usual_look,
 )
 from reconstruction.training.parameters import MODEL
 
@@ -109,6 +110,8 @@ class SceneCard:
         When its description was written.
     places_enu_m
         Where its photos were taken, shape (k, 3); none where that is not known.
+    look
+        Place and direction, ENU, of a photo in their midst; None where that is not known.
     """
 
     folder: Path
@@ -119,6 +122,7 @@ class SceneCard:
     n_gaussians: int
     written_at: datetime
     places_enu_m: Array
+    look: tuple[Array, Array] | None = None
 
     @cached_property
     def by_global_id(self) -> dict[str, PanelRow]:
@@ -151,14 +155,19 @@ class SceneCard:
         """Square before the largest facade, so that all of it is seen.
 
         Where it is known from how far photos of it were taken, it is from no farther, as nothing stood in the way
-        there, unless the field of view would be wider than `WIDEST_RAD`.
+        there, unless the field of view would be wider than `WIDEST_RAD`. Without panels it is that of a photo in the
+        midst of the others.
         """
         facades: dict[str, list[PanelRow]] = {}
         for panel in self.panels:
             facades.setdefault(panel.facade_id, []).append(panel)
         corners = [np.array([panel.element.corners_enu_m for panel in each]) for each in facades.values()]
         if not corners:
-            return view_of(())
+            blank = view_of(())
+            if self.look is None:
+                return blank
+            place, forward = self.look
+            return replace(blank, pose=Pose(place, _rotation(forward)))
         number = largest(corners)
         shown, standoff = tuple(facades.values())[number], standoff_m(corners[number], self.places_enu_m)
         return view_of(shown, math.inf if standoff is None else standoff)
@@ -185,8 +194,8 @@ def read_card(folder: Path) -> SceneCard:
     stored = StoredScene(folder)
     panels = tuple(PanelRow(element, head.name, head.global_id) for head in stored.heads for element in head.elements)
     at = datetime.fromtimestamp((folder / DESCRIPTION).stat().st_mtime, UTC)
-    places = places_of(stored.training)
-    return SceneCard(folder, stored.name, stored.global_id, stored.origin, panels, stored.n_gaussians, at, places)
+    places, look = places_of(stored.training), usual_look(stored.training)
+    return SceneCard(folder, stored.name, stored.global_id, stored.origin, panels, stored.n_gaussians, at, places, look)
 
 
 def scenes_beside(folder: Path) -> tuple[Path, ...]:

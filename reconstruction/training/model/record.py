@@ -115,6 +115,8 @@ class ModelRecord:
         Corrections of the poses of `learned`; none where they were not learned.
     places_enu_m
         Where `learned` were taken, with corrections; models of before do not know.
+    forwards_enu
+        Unit vectors in which they look; models of before do not know.
     """
 
     config: TrainConfig
@@ -129,6 +131,7 @@ class ModelRecord:
     decisions: tuple[Decision, ...] = ()
     moves: tuple[Move, ...] = ()
     places_enu_m: tuple[Vec3, ...] = ()
+    forwards_enu: tuple[Vec3, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("corner_square", "exposure", "extent_m"):

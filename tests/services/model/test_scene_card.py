@@ -9,7 +9,7 @@ from groundstation.services.model.facility_records import book_of_scene, object_
 from groundstation.services.model.scene_card import PanelRow, is_model, is_scene, read_card, scenes_beside, view_of
 from planning.base.errors import InputError
 from reconstruction.objects.gs_scene import GsElement
-from reconstruction.objects.store import StoredScene, write_scene
+from reconstruction.objects.store import StoredScene, usual_look, write_scene
 from reconstruction.records.entries import global_id_of
 from tests.reconstruction.objects.synthetic_scene import synthetic_scene
 
@@ -67,6 +67,20 @@ def test_the_first_view_is_square_before_the_largest_facade_and_shows_all_of_it(
         found.append(float((first.pose.position_enu_m - middle) @ normal))
     assert found[0] == pytest.approx(3.4)
     assert found[1] < found[0] < found[2]
+
+
+def test_the_first_view_of_a_model_without_panels_is_a_photo_s_in_the_midst_of_the_others(tmp_path):
+    scene = synthetic_scene()
+    places = [[90.0, 0.0, 3.0], [10.0, -20.0, 3.0], [12.0, -21.0, 4.0]]
+    looks = {"places_enu_m": places, "forwards_enu": [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.6, 0.0, -0.8]]}
+    bare = tuple(replace(part, elements=(), kind="background") for part in scene.components)
+    bare = replace(scene, components=bare, training={**scene.training, **looks})
+    write_scene(bare, tmp_path / "bare.gsscene")
+    first = read_card(tmp_path / "bare.gsscene").first_view
+    assert first.pose.position_enu_m.tolist() == places[2]
+    assert first.pose.forward_enu == pytest.approx((0.6, 0.0, -0.8))
+    assert first.pose.angles_deg[2] == pytest.approx(0.0, abs=1e-9)
+    assert usual_look({"places_enu_m": places}) is None
 
 
 def test_records_are_of_a_panel_its_facade_or_the_building(folder, tmp_path):
