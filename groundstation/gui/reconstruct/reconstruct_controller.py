@@ -460,7 +460,7 @@ class ReconstructController(FolderController):
         elif ended.outcome == "done" and was in BUSY:
             self._context.say(Severity.NOTE, self.tr("The model is written: {0}").format(self.out))
             self.watch_errors(TRAINING)
-            self._context.note(model=self.out)
+            self._context.note(model=self.out, is_model_open=False)  # one that is open is of before
         self.placeChanged.emit()
         self.stateChanged.emit()
         self.progressed.emit()

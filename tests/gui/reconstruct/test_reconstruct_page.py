@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from groundstation.services.jobs.channel import ProcessEnded
+from groundstation.services.project.steps import Act, Step, guidance
 from groundstation.services.reconstruct.messages import (
     AskScene,
     CancelTraining,
@@ -115,7 +116,9 @@ def test_a_training_goes_from_preparing_to_its_end_and_buttons_follow(chosen, tm
     assert len(chosen.told.of(Stop)) == 1
     assert enabled(chosen) == {"cancel_training"}
     assert "rates fall" in chosen.progress.text()
+    chosen._context.note(is_model_open=True)  # another one, on the Model tab
     take(chosen, Ended("done", None, {}))
+    assert guidance(Step.MODEL, chosen._context.milestones).act is Act.OPEN_MODEL
     assert enabled(chosen) == {"train", "choose", "choose_out", "form"}
     assert "finished" in chosen.progress.text()
     assert "The model is written" in chosen.messages[-1].text
