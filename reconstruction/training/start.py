@@ -305,6 +305,17 @@ def usual_reduce(photos: Sequence[PosedPhoto], window_px: int) -> int:
     return max(1, math.isqrt(largest_px // max(WINDOWS * window_px, LEAST_LEARNED_PX)))
 
 
+def _said_smaller(photos: Sequence[PosedPhoto], reduce: int) -> str:
+    """That photos are made smaller."""
+    largest = max((photo.intrinsics for photo in photos), key=lambda lens: lens.width_px * lens.height_px)
+    wide, high = largest.width_px, largest.height_px
+    return say(
+        "photos of {} x {} pixels are learned from at {} x {}, which steps see more often; with the setting 'reduce' "
+        "at 1 all pixels count, and a training needs {} times as long",
+        *(wide, high, wide // reduce, high // reduce, reduce**2),
+    )
+
+
 LEAST_LIGHT_S = 1.0
 """For learning light, where nearly all time is gone before it begins."""
 
@@ -378,7 +389,10 @@ def start_model(
         From `monitor`.
     """
     watch = watch or Timer()
-    config = replace(config, reduce=config.reduce or usual_reduce(source.photos, config.window_px))
+    notes: tuple[str, ...] = ()
+    if config.reduce == 0:
+        config = replace(config, reduce=usual_reduce(source.photos, config.window_px))
+        notes = () if config.reduce == 1 else (_said_smaller(source.photos, config.reduce),)
     held_out = held_out_names([photo.name for photo in source.photos], config.held_out, config.seed)
     learned = tuple(photo for photo in source.photos if photo.name not in held_out)
     scene = known_scene(source)
@@ -445,7 +459,7 @@ def start_model(
         "" if light is None else light.model,
         decisions,
         moves,
-        () if light is None else light.notes,
+        notes if light is None else (*notes, *light.notes),
         None if light is None else light.transients,
     )
 

@@ -190,5 +190,9 @@ def test_large_photos_are_learned_from_smaller_unless_it_is_said_how(tmp_path):
     write_data_set(tmp_path / "large", 3, LENS.scaled(1040, 780))
     config = TrainConfig(method="2dgs", n_splats=100, max_splats=100)
     source = read_photo_set(tmp_path / "large")
-    assert start_model(source, config).config.reduce == 2
-    assert start_model(source, replace(config, reduce=1)).config.reduce == 1
+    start = start_model(source, config)
+    assert start.config.reduce == 2
+    assert "photos of 1040 x 780 pixels are learned from at 520 x 390" in start.notes[0]
+    assert "4 times" in start.notes[0]
+    start = start_model(source, replace(config, reduce=1))
+    assert (start.config.reduce, start.notes) == (1, ())
