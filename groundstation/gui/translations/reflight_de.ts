@@ -1109,6 +1109,29 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     </message>
 </context>
 <context>
+    <name>DistanceDialog</name>
+    <message>
+        <source>State a distance</source>
+        <translation>Abstand angeben</translation>
+    </message>
+    <message>
+        <source>Two photos that were taken far apart, and their distance: it says how large the building is.</source>
+        <translation>Zwei Fotos, die weit voneinander aufgenommen wurden, und ihr Abstand: er sagt, wie groß das Gebäude ist.</translation>
+    </message>
+    <message>
+        <source>From photo</source>
+        <translation>Von Foto</translation>
+    </message>
+    <message>
+        <source>To photo</source>
+        <translation>Bis Foto</translation>
+    </message>
+    <message>
+        <source>Distance</source>
+        <translation>Abstand</translation>
+    </message>
+</context>
+<context>
     <name>EffectsController</name>
     <message>
         <source>Look at the scene</source>
@@ -5100,6 +5123,10 @@ Blickrichtung: {3}</translation>
         <translation>Nur aus Fotos ...</translation>
     </message>
     <message>
+        <source>State a distance ...</source>
+        <translation>Abstand angeben ...</translation>
+    </message>
+    <message>
         <source>Find panels</source>
         <translation>Scheiben suchen</translation>
     </message>
@@ -5120,12 +5147,20 @@ Blickrichtung: {3}</translation>
         <translation>Diese Fotos rendern ...</translation>
     </message>
     <message>
+        <source>The photos are being worked on; wait for its end, or cancel it.</source>
+        <translation>An den Fotos wird gerade gearbeitet; das Ende abwarten oder abbrechen.</translation>
+    </message>
+    <message>
         <source>Poses, sharpness, exposure and the coverage that was achieved</source>
         <translation>Lagen, Schärfe, Belichtung und die erreichte Abdeckung</translation>
     </message>
     <message>
         <source>Make a coarse model and a site of the photos of a first flight: poses, walls, roofs and ground</source>
         <translation>Aus den Fotos eines ersten Flugs ein Grobmodell und einen Standort machen: Posen, Wände, Dächer und Boden</translation>
+    </message>
+    <message>
+        <source>How far apart two photos were taken: the coarse model, whose size is a guess, gets its true one</source>
+        <translation>Wie weit voneinander zwei Fotos aufgenommen wurden: das Grobmodell, dessen Größe geschätzt ist, bekommt seine wahre</translation>
     </message>
     <message>
         <source>Make the photos that the simulated flight took, with what its panes mirror; wide ones take hours</source>
@@ -5178,6 +5213,18 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Photos of the first flight</source>
         <translation>Fotos des ersten Flugs</translation>
+    </message>
+    <message>
+        <source>A coarse model of these photos was begun in {0}, and not finished. What was found is kept.</source>
+        <translation>Ein Grobmodell dieser Fotos wurde in {0} begonnen und nicht beendet. Was gefunden wurde, ist noch da.</translation>
+    </message>
+    <message>
+        <source>Make a coarse model</source>
+        <translation>Ein Grobmodell machen</translation>
+    </message>
+    <message>
+        <source>Begin anew ...</source>
+        <translation>Neu beginnen ...</translation>
     </message>
     <message>
         <source>Folder for the coarse model</source>
@@ -8741,10 +8788,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wird ein Ordner, gefunden eine Datei; einen Ordner für die Fotos nennen</translation>
     </message>
     <message>
-        <source>expected a grey mask, found colours; write glass as white on black</source>
-        <translation>erwartet wird eine graue Maske, gefunden wurden Farben; Glas weiß auf schwarz schreiben</translation>
-    </message>
-    <message>
         <source>expected a grey or colour picture of 8 bit, found {0} of shape {1}; convert it (for example to an 8-bit PNG or JPEG) first</source>
         <translation>erwartet wird ein graues oder farbiges Bild mit 8 Bit, gefunden {0} der Form {1}; es zuerst umwandeln (etwa in PNG oder JPEG mit 8 Bit)</translation>
     </message>
@@ -9345,10 +9388,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>endgültige Bodenrisikoklasse</translation>
     </message>
     <message>
-        <source>find the panels in them</source>
-        <translation>die Scheiben darin suchen</translation>
-    </message>
-    <message>
         <source>finding the ground</source>
         <translation>Boden wird gesucht</translation>
     </message>
@@ -9613,6 +9652,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>hat nur Ansichten, die zum Bewerten zurückgehalten sind; Fotos mit mehr Ansichten nennen</translation>
     </message>
     <message>
+        <source>has photos of a fisheye; prepare it again, which makes them straight</source>
+        <translation>hat Fotos eines Fischauges; noch einmal aufbereiten, dann werden sie entzerrt</translation>
+    </message>
+    <message>
         <source>has splats on panel {0}, and {1} has {2} panels; name a file of the same site</source>
         <translation>hat Splats auf Scheibe {0}, und {1} hat {2} Scheiben; eine Datei desselben Standorts nennen</translation>
     </message>
@@ -9623,6 +9666,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>has {0} bytes; a tile of SRTM has {1} or {2}; copy it again</source>
         <translation>hat {0} Bytes; eine SRTM-Kachel hat {1} oder {2}; noch einmal kopieren</translation>
+    </message>
+    <message>
+        <source>has {0} x {1} pixels, and the photo&apos;s camera {2} x {3}</source>
+        <translation>hat {0} x {1} Pixel, und die Kamera des Fotos {2} x {3}</translation>
     </message>
     <message>
         <source>heading</source>
@@ -9823,6 +9870,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>is a trained model; records belong to its objects, of which &apos;organise&apos; makes a folder</source>
         <translation>ist ein trainiertes Modell; Einträge gehören zu seinen Objekten, von denen &apos;organise&apos; einen Ordner macht</translation>
+    </message>
+    <message>
+        <source>is black everywhere</source>
+        <translation>ist überall schwarz</translation>
     </message>
     <message>
         <source>is cut off; copy it again</source>
@@ -10161,6 +10212,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ihre Untergrenze &apos;{0}&apos; liegt über der Obergrenze &apos;{1}&apos;</translation>
     </message>
     <message>
+        <source>its mask cannot be used ({0}); it was left out</source>
+        <translation>seine Maske ist nicht zu gebrauchen ({0}); es wurde ausgelassen</translation>
+    </message>
+    <message>
         <source>its missions set the camera differently; what the first says is taken for all</source>
         <translation>ihre Missionen stellen die Kamera verschieden ein; was die erste sagt, gilt für alle</translation>
     </message>
@@ -10251,6 +10306,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>lay a grid of panels on a facade, or find panels in photos</source>
         <translation>ein Raster von Scheiben auf eine Fassade legen, oder Scheiben in Fotos suchen</translation>
+    </message>
+    <message>
+        <source>lens distortion is off, but there are photos of a fisheye, which can be learned from straight only</source>
+        <translation>die Entzerrung ist aus, aber Fotos eines Fischauges können nur entzerrt gelernt werden</translation>
     </message>
     <message>
         <source>lens found from the photos</source>
@@ -11155,6 +11214,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>photos of {0}</source>
         <translation>Fotos von {0}</translation>
+    </message>
+    <message>
+        <source>photos of {0} x {1} pixels are learned from at {2} x {3}, which steps see more often; with the setting &apos;reduce&apos; at 1 all pixels count, and a training needs {4} times as long</source>
+        <translation>aus Fotos von {0} x {1} Pixeln wird mit {2} x {3} gelernt, damit Schritte sie öfter sehen; mit der Einstellung &apos;reduce&apos; auf 1 zählen alle Pixel, und ein Training braucht {4}-mal so lange</translation>
     </message>
     <message>
         <source>photos read: {0}</source>
@@ -13009,6 +13072,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} m vom Luftraum</translation>
     </message>
     <message>
+        <source>{0} masks are not there, the first {1}: all pixels of their photos count</source>
+        <translation>{0} Masken fehlen, die erste {1}: alle Pixel ihrer Fotos zählen</translation>
+    </message>
+    <message>
         <source>{0} may fly in wind of up to {1} m/s, but {2} m/s are stated; wait for less, or take another aircraft</source>
         <translation>{0} darf in Wind bis {1} m/s fliegen, angegeben sind aber {2} m/s; warten Sie auf weniger, oder nehmen Sie ein anderes Fluggerät</translation>
     </message>
@@ -13019,10 +13086,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} of {1} found their place, {2} points, {3} of {4} pairs matched, image points off by {5} px</source>
         <translation>{0} von {1} haben ihren Platz gefunden, {2} Punkte, {3} von {4} Paaren verglichen, Bildpunkte liegen um {5} px daneben</translation>
-    </message>
-    <message>
-        <source>{0} of {1} frames have masks, which are not used: all of a photo is learned</source>
-        <translation>{0} von {1} frames haben Masken, die nicht verwendet werden: gelernt wird das ganze Foto</translation>
     </message>
     <message>
         <source>{0} of {1} images of the COLMAP model are not in {2}, the first {3}; they are left out</source>
@@ -15293,6 +15356,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>gleichmäßiges Licht {0}; ganz in der Sonne {1}; zum Teil {2}</translation>
     </message>
     <message>
+        <source>expected a grey mask, found colours; write what counts as white on black</source>
+        <translation>erwartet: eine graue Maske, gefunden: Farben; was zählt, weiß auf schwarz schreiben</translation>
+    </message>
+    <message>
+        <source>find the panels in them, or make the data set of a building without any</source>
+        <translation>die Scheiben darin finden, oder den Datensatz eines Gebäudes ohne Scheiben machen</translation>
+    </message>
+    <message>
         <source>has no dataset.json, but a COLMAP model in {0}; &apos;prepare PHOTOS --colmap MODEL&apos; makes one of it, with a site and its panels or without</source>
         <translation>hat keine dataset.json, aber ein COLMAP-Modell in {0}; &apos;prepare PHOTOS --colmap MODEL&apos; macht eine daraus, mit einem Standort und seinen Scheiben oder ohne</translation>
     </message>
@@ -15997,8 +16068,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} von {1} Fotos sind Kopien anderer und bleiben weg, zuerst {2}</translation>
     </message>
     <message>
+        <source>{0} of {1} photos are of a fisheye that shows more than can be told straight: what lies farther than {2} degrees from the optical axis along their rows or columns is left out</source>
+        <translation>{0} von {1} Fotos sind von einem Fischauge, das mehr zeigt, als sich gerade abbilden lässt: was längs der Zeilen oder Spalten weiter als {2} Grad von der optischen Achse liegt, wird ausgelassen</translation>
+    </message>
+    <message>
         <source>{0} of {1} photos have another size than in the COLMAP model, by one factor in width and height; its cameras were scaled to them</source>
         <translation>{0} von {1} Fotos haben eine andere Größe als im COLMAP-Modell, um einen Faktor in Breite und Höhe; seine Kameras wurden auf sie skaliert</translation>
+    </message>
+    <message>
+        <source>{0} of {1} photos have no mask, the first {2}: all their pixels count</source>
+        <translation>{0} von {1} Fotos haben keine Maske, das erste {2}: alle ihre Pixel zählen</translation>
     </message>
     <message>
         <source>{0} of {1} photos show a facade half in the sun with take-off at {2}</source>
@@ -23338,8 +23417,8 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>{0}: violett {1}, gelb {2}</translation>
     </message>
     <message>
-        <source>Choose a data set, or make one of the flight&apos;s photos on the Photos tab.</source>
-        <translation>Einen Datensatz wählen oder im Reiter Fotos aus den Fotos des Flugs anlegen.</translation>
+        <source>Choose a data set, or a folder of photos with their COLMAP or nerfstudio model; or make one of the flight&apos;s photos on the Photos tab.</source>
+        <translation>Einen Datensatz wählen, oder einen Ordner mit Fotos und ihrem COLMAP- oder nerfstudio-Modell; oder im Reiter „Fotos“ einen aus den Fotos des Fluges machen.</translation>
     </message>
     <message>
         <source>A photo of the data set. The model is shown here once it learns.</source>
