@@ -5220,7 +5220,7 @@ Blickrichtung: {3}</translation>
     </message>
     <message>
         <source>Make a coarse model</source>
-        <translation>Ein Grobmodell machen</translation>
+        <translation>Grobmodell machen</translation>
     </message>
     <message>
         <source>Begin anew ...</source>
