@@ -44,7 +44,7 @@ from reconstruction.splats.ply import read_splats
 from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import NO_PANEL, Splats, splats_from_tensors, splats_to_tensors
-from reconstruction.splats.surfels import known_scene, model_origin, points_only, scene_of_points
+from reconstruction.splats.surfels import KnownScene, known_scene, model_origin, points_only, scene_of_points
 from reconstruction.training.callbacks import Callbacks, HeldOut
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.methods.shader import Shader, Surroundings
@@ -316,6 +316,27 @@ def _said_smaller(photos: Sequence[PosedPhoto], reduce: int) -> str:
     )
 
 
+def _placed_splats(
+    source: PhotoSet,
+    learned: Sequence[PosedPhoto],
+    scene: KnownScene,
+    origin: NDArray[np.float64],
+    config: TrainConfig,
+    monitor: Monitor,
+) -> tuple[Splats, tuple[Decision, ...]]:
+    """New splats, and whether they begin on points where a mesh is there, too."""
+    decisions: tuple[Decision, ...] = ()
+    finest_px = InitialParameters().finest_px * config.reduce
+    parameters = InitialParameters(n_splats=config.n_splats, finest_px=finest_px, seed=config.seed)
+    if config.start_from == "points":
+        start = points_only(scene, source.folder, knows_panels=config.trained_by.knows_panels)
+    else:
+        places = np.array([photo.pose.position_enu_m for photo in learned])
+        start, on_points = scene_of_points(scene, places, config.points_for_mesh)
+        decisions = () if on_points is None else (on_points,)
+    return initial_splats(start, learned, origin, parameters, source.picture, monitor), decisions
+
+
 LEAST_LIGHT_S = 1.0
 """For learning light, where nearly all time is gone before it begins."""
 
@@ -422,15 +443,8 @@ def start_model(
         splats = splats_of_file(splats_path, source, learned, origin, config.memory_bytes, monitor)
         splats = with_primitive(splats, config.trained_by.primitive)
     else:
-        finest_px = InitialParameters().finest_px * config.reduce
-        parameters = InitialParameters(n_splats=config.n_splats, finest_px=finest_px, seed=config.seed)
-        if config.start_from == "points":
-            start = points_only(scene, source.folder, knows_panels=config.trained_by.knows_panels)
-        else:
-            places = np.array([photo.pose.position_enu_m for photo in learned])
-            start, on_points = scene_of_points(scene, places, config.points_for_mesh)
-            decisions += () if on_points is None else (on_points,)
-        splats = initial_splats(start, learned, origin, parameters, source.picture, monitor)
+        splats, on_points = _placed_splats(source, learned, scene, origin, config, monitor)
+        decisions += on_points
     light: TrainedReflections | None = None
     shader: Shader | None = None
     is_told = False
