@@ -45,7 +45,11 @@ SURE, LEAST_SURE = 0.75, 8
 """Confidence of panes at the first look from which on they are compared with panels, and their number, at least."""
 
 MOST_OTHERS = 0.5
-"""Share of these panes that are no panels, up to which panels are believed: on synthetic facades up to 0.17."""
+"""Share of these panes that are no panels, up to which panels are believed: on synthetic facades up to 0.17.
+
+And share of the glass that no panel covers, up to which these panes say whether anything is missed: what lies around a
+wall whose extent is not known is taken for glass, too, but not for panes.
+"""
 
 INNER = np.array([[0.5, 0.5], [0.25, 0.25], [0.75, 0.25], [0.75, 0.75], [0.25, 0.75]])
 """Places on a panel at which the network is asked, as shares of its sides."""
@@ -77,18 +81,19 @@ class NetworkForPanes:
     def assess(self, scene: _Compared) -> Assessment:
         """The largest share: of panels where the network sees no glass, of its glass without panels, of other panes.
 
-        Panes are looked for only where the first two neither suffice nor say nothing.
+        Panes are looked for only where the first two neither suffice nor say nothing. Where most of them are panels,
+        glass beside these is no reason.
         """
         no_glass, no_panel = disagreement_with_network(scene.grids, scene.predictions, scene.view, scene.size_px)
-        panels, others = [panel.corners_px for grid in scene.grids for panel in grid.panels], 0.0
-        if 0.0 < max(no_glass, no_panel) <= self.tolerance:
+        panels, others = [panel.corners_px for grid in scene.grids for panel in grid.panels], None
+        if no_glass <= self.tolerance and 0.0 < max(no_glass, no_panel) <= MOST_OTHERS:
             others = other_panes(panels, find_panes(scene.predictions).within(scene.view).panes)
-        if others > MOST_OTHERS:
+        if others is not None and (others > MOST_OTHERS or others <= self.tolerance):
             reason = say(
                 "the network sees no glass on {:.0f} % of {} panels, and {:.0f} % of its panes are none of them",
                 *(100.0 * no_glass, len(panels), 100.0 * others),
             )
-            return Assessment(others, reason, scene.seconds)
+            return Assessment(max(no_glass, others), reason, scene.seconds)
         reason = say(
             "the network sees no glass on {:.0f} % of {} panels, and {:.0f} % of its glass lies outside them",
             *(100.0 * no_glass, len(panels), 100.0 * no_panel),
@@ -138,8 +143,8 @@ def disagreement_with_network(
     return no_glass, float(1.0 - covered.mean())
 
 
-def other_panes(panels_px: Sequence[Array], panes: Sequence[Pane]) -> float:
-    """Share of panes that the network is sure of and that are none of the panels; 0 where these panes are too few.
+def other_panes(panels_px: Sequence[Array], panes: Sequence[Pane]) -> float | None:
+    """Share of panes that the network is sure of and that are none of the panels; None where these panes are too few.
 
     Lines that divide a wall with windows into wrong cells lie on glass often enough; their cells are no panes. Next to
     panels that have not four corners the network says nothing: it knows no others.
@@ -151,7 +156,7 @@ def other_panes(panels_px: Sequence[Array], panes: Sequence[Pane]) -> float:
     """
     sure = [pane.corners_px for pane in panes if pane.confidence >= SURE]
     if len(sure) < LEAST_SURE:
-        return 0.0
+        return None
     low, high = (np.array([end(each, axis=0) for each in panels_px]).reshape(-1, 2) for end in (np.min, np.max))
     n_others = 0
     for quad in sure:

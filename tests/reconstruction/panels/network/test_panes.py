@@ -19,7 +19,7 @@ from planning.base.progress import QUIET
 from reconstruction.metrics.metrics import PhotoScores
 from reconstruction.metrics.overlaps import index_image, pixel_overlaps
 from reconstruction.metrics.run import own_method, score_answer
-from reconstruction.metrics.sets import ScoredPhoto, annotated_set, folder_set, scored, whole_view
+from reconstruction.metrics.sets import ScoredPhoto, annotated_set, folder_set, scored, synthetic_set, whole_view
 from reconstruction.panels.network import pool, training
 from reconstruction.panels.network.calibration import Source, are_there, calibrated, calibrated_last, write_regressions
 from reconstruction.panels.network.confidence import (
@@ -330,8 +330,17 @@ def test_cells_that_are_other_panes_than_the_network_s_are_told_from_the_same_on
     assert other_panes(triangles, panes) == 0.0, "the network knows four corners only"
     assert other_panes([], panes) == 1.0
     assert other_panes(cells[n:], panes) == pytest.approx(1.0 / n)
-    assert other_panes([], [replace(pane, confidence=SURE - 0.01) for pane in panes]) == 0.0
-    assert other_panes([], panes[: LEAST_SURE - 1]) == 0.0
+    assert other_panes([], [replace(pane, confidence=SURE - 0.01) for pane in panes]) is None
+    assert other_panes([], panes[: LEAST_SURE - 1]) is None
+
+
+@pytest.mark.long
+def test_what_lies_around_a_wall_and_looks_like_glass_is_no_reason_against_panels_that_all_panes_are():
+    (photo,) = synthetic_set("made-planar", 1, extent_margin_m=None, first_seed=3).photos()
+    (facade,) = segment_image(photo.image, photo.views).facades
+    assert facade.network is not None
+    assert not facade.network.on, facade.network.reason
+    assert "of its panes are none of them" in facade.network.reason
 
 
 GLASS = Path(__file__).parents[5] / "shared" / "data" / "glass"
