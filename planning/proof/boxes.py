@@ -126,7 +126,9 @@ def _is_in_cone(offset: Array, half: Array, panel: Panel) -> bool:
 @kernel
 def _is_near(centre: Array, half: Array, triangle: Array, near: float, corner: Array) -> bool:
     """Whether all corners of a box are nearer to a triangle, the one that looks farthest first; `corner` is room."""
-    least = near - SLACK_M
+    reach = near - SLACK_M
+    if reach <= 0.0:
+        return False
     first = 0
     for k in range(3):
         if 3.0 * centre[k] >= triangle[0, k] + triangle[1, k] + triangle[2, k]:
@@ -134,7 +136,7 @@ def _is_near(centre: Array, half: Array, triangle: Array, near: float, corner: A
     for i in range(8):
         for k in range(3):
             corner[k] = centre[k] + (half[k] if (i ^ first) >> k & 1 else -half[k])
-        if not (least > 0.0 and point_triangle_d2(corner, triangle) <= least * least):
+        if not point_triangle_d2(corner, triangle) <= reach * reach:
             return False
     return True
 

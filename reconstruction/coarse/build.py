@@ -265,7 +265,8 @@ def _prepare_folder(kept: Path, folder: Path, taken: CoarseInputs, parameters: C
     settings = [*work, sorted(files)]
     digest = hashlib.sha256(json.dumps(settings).encode()).hexdigest()
     path = kept / SETTINGS
-    if not path.is_file() or read_json(path).get("sha256") != digest:
+    written = read_json(path) if path.is_file() else None
+    if not isinstance(written, dict) or written.get("sha256") != digest:
         shutil.rmtree(kept, ignore_errors=True)
     make_folder(kept)
     write_atomically(path, json.dumps({"sha256": digest, "photos": str(folder.resolve())}).encode())

@@ -251,6 +251,7 @@ def spacings_of(points_enu_m: Array, least_m: Array, most_m: Array, is_loose: ND
 
 
 SPARSEST = 4.0
+"""Times the median distance of loose points: one that is farther from its neighbours is no part of a wall."""
 
 
 def plane_normals(points_enu_m: Array, cloud_enu_m: Array) -> Array:

@@ -149,7 +149,8 @@ def begun_coarse(photos: Path, beside: Path) -> Path | None:
     for path in sorted(begun, key=lambda each: -each.stat().st_mtime):
         folder = path.parent.parent
         with suppress(InputError):
-            is_of_these = read_json(path, names_files=True).get("photos") == str(photos.resolve())
+            written = read_json(path, names_files=True)
+            is_of_these = isinstance(written, dict) and written.get("photos") == str(photos.resolve())
             if is_of_these and not (folder / REPORT_FILE).exists():
                 return folder
     return None

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from groundstation.services.photos.coarse import BESIDE_FLOWN_M, NOT_FLOWN_M, ROUNDED_M, where_flown
+from groundstation.services.photos.coarse import (
+    BESIDE_FLOWN_M,
+    KEPT,
+    NOT_FLOWN_M,
+    ROUNDED_M,
+    begun_coarse,
+    where_flown,
+)
 from planning.geo.mesh import box_mesh
 from planning.site.bundled import ORIGIN
 from planning.site.records import Airspace, Site
+from reconstruction.coarse.build import SETTINGS
 
 BUILDING = box_mesh(np.array([-7.0, -5.0, 0.0]), np.array([7.0, 5.0, 9.0]))
 SITE = Site("pavilion", ORIGIN, (), Airspace((-47.0, -45.0, 2.0), (47.0, 45.0, 39.0), 0.0), (0.0, -21.0, 0.0), "b.ply")
@@ -56,3 +66,14 @@ def test_of_photos_from_the_ground_the_airspace_says_nothing_and_the_pilot_is_to
     assert site == SITE
     assert (found.severity, found.code) == ("warning", "airspace-not-seen")
     assert "behind" in str(found.message)
+
+
+@pytest.mark.parametrize("content", ["[]", "3", "{", '{"photos": 3}'])
+def test_what_others_keep_under_the_name_of_our_settings_is_no_model_that_was_begun(tmp_path, content):
+    photos, kept = tmp_path / "photos", tmp_path / "other" / KEPT
+    for folder in (photos, kept):
+        folder.mkdir(parents=True)
+    (kept / SETTINGS).write_text(content)
+    assert begun_coarse(photos, tmp_path / "coarse") is None
+    (kept / SETTINGS).write_text(json.dumps({"photos": str(photos.resolve())}))
+    assert begun_coarse(photos, tmp_path / "coarse") == tmp_path / "other"
