@@ -258,8 +258,8 @@ SETTINGS, MAPPED = "settings.json", "mapped.json"
 def _prepare_folder(kept: Path, folder: Path, taken: CoarseInputs, parameters: CoarseParameters) -> None:
     """Take away what is of other photos or other settings, and note which folder of photos it is of."""
     files = [
-        (name, photo.path.stat().st_size, start_of(photo.path), repr(lens))
-        for name, photo, lens in zip(taken.names, taken.metadata, taken.lenses, strict=True)
+        (name, photo.path.stat().st_size, start_of(photo.path), repr(lens), *([start_of(mask)] if mask else []))
+        for name, photo, lens, mask in zip(taken.names, taken.metadata, taken.lenses, taken.masks, strict=True)
     ]
     work = [parameters.max_image_size_px, parameters.max_features, parameters.least_contrast]
     settings = [*work, sorted(files)]
@@ -276,8 +276,10 @@ def _run(
     colmap: Any, kept: Path, folder: Path, taken: CoarseInputs, parameters: CoarseParameters, monitor: Monitor
 ) -> ColmapRun:
     started = [
-        StartPhoto(name, group, lens, one.position_enu_m, one.covariance)
-        for name, group, lens, one in zip(taken.names, taken.groups, taken.lenses, taken.measured, strict=True)
+        StartPhoto(name, group, lens, one.position_enu_m, one.covariance, mask)
+        for name, group, lens, one, mask in zip(
+            taken.names, taken.groups, taken.lenses, taken.measured, taken.masks, strict=True
+        )
     ]
     settings = RefineParameters(
         max_image_size_px=parameters.max_image_size_px,

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +38,7 @@ from planning.site.records import MAX_DISTANCE_M
 from reconstruction.base.cameras import Intrinsics
 from reconstruction.coarse.placing import Measured
 from reconstruction.colmap.pycolmap_run import LEAST_PHOTOS
-from reconstruction.photos.decode import whole_content
+from reconstruction.photos.decode import mask_of_size, whole_content
 from reconstruction.photos.lens import CameraKind, camera_kind, lens_of, of_camera
 from reconstruction.photos.poses import DEFAULT_ACCURACY, measured_pose
 
@@ -80,6 +80,8 @@ class Stated:
         Which of several cameras; None for the wide one.
     dense
         Whether walls without points are looked for in the photos.
+    masks
+        By photos' names; black where nothing counts: passers-by, vehicles, the aircraft itself.
     """
 
     lens: Intrinsics | None = None
@@ -89,6 +91,7 @@ class Stated:
     heights: PhotoHeights = "auto"
     camera: CameraKind | None = None
     dense: EffectSetting = "auto"
+    masks: Mapping[str, Path] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,6 +108,8 @@ class CoarseInputs:
         Place and turn in the provisional frame: ENU about `origin`.
     origin
         None where nothing says where on earth this is.
+    masks
+        None where all of a photo counts.
     """
 
     names: tuple[str, ...]
@@ -113,6 +118,7 @@ class CoarseInputs:
     groups: tuple[Hashable, ...]
     measured: tuple[Measured, ...]
     origin: Origin | None
+    masks: tuple[Path | None, ...]
     findings: tuple[Finding, ...]
 
 
@@ -131,7 +137,8 @@ def read_inputs(
     InputError
         There are too few photos, or they are of places far apart.
     """
-    whole, damaged = _whole(photos, monitor)
+    mask_of = {photo.path: stated.masks.get(_name(photo, folder)) for photo in photos}
+    whole, damaged = _whole(photos, mask_of, monitor)
     of_kind, findings = of_camera(whole, stated.camera)
     chosen, copies = _once(of_kind)
     if len(chosen) < LEAST_PHOTOS:
@@ -147,9 +154,8 @@ def read_inputs(
         text = say("{} of {} photos do not say their focal length: it is found with the model", n_unknown, len(chosen))
         findings += (Finding(Severity.NOTE, "lens-found", text, "", float(n_unknown), None, "photos"),)
     findings = (*damaged, *days_apart(chosen), *copies, *findings, *lately)
-    return CoarseInputs(
-        tuple(_name(photo, folder) for photo in chosen), chosen, lenses, groups, measured, origin, findings
-    )
+    names, masks = tuple(_name(photo, folder) for photo in chosen), tuple(mask_of[photo.path] for photo in chosen)
+    return CoarseInputs(names, chosen, lenses, groups, measured, origin, masks, findings)
 
 
 def _too_few(
@@ -196,7 +202,9 @@ class ProvisionalPlace:
     home_enu_m: Vec3 = (0.0, 0.0, 0.0)
 
 
-def _whole(photos: Sequence[PhotoMetadata], monitor: Monitor) -> tuple[tuple[PhotoMetadata, ...], tuple[Finding, ...]]:
+def _whole(
+    photos: Sequence[PhotoMetadata], mask_of: Mapping[Path, Path | None], monitor: Monitor
+) -> tuple[tuple[PhotoMetadata, ...], tuple[Finding, ...]]:
     """Photos all of whose pictures are there, and findings about the others: matches in half a picture mislead."""
 
     def finding(photo: PhotoMetadata) -> Finding | None:
@@ -204,6 +212,13 @@ def _whole(photos: Sequence[PhotoMetadata], monitor: Monitor) -> tuple[tuple[Pho
             whole_content(photo)
         except InputError as error:
             return Finding(Severity.WARNING, "photo-unreadable", str(error), str(photo.path))
+        mask = mask_of[photo.path]
+        try:
+            if mask is not None:
+                mask_of_size(mask, photo.width_px, photo.height_px)
+        except InputError as error:
+            text = say("its mask cannot be used ({}); it was left out", error)
+            return Finding(Severity.WARNING, "photo-mask", text, str(photo.path))
         return None
 
     found: list[Finding | None] = []

@@ -9,7 +9,7 @@ import importlib
 import math
 import sqlite3
 import threading
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
@@ -29,6 +29,7 @@ from reconstruction.base.cameras import Intrinsics, PosedPhoto
 from reconstruction.colmap.folder import read_model, write_model
 from reconstruction.colmap.georeference import LEAST_SIGMA_M, ROBUST_SIGMAS, Similarity, position_covariance
 from reconstruction.colmap.record import ColmapCamera, ColmapModel, camera_of
+from reconstruction.photos.decode import mask_of_size
 
 Array = NDArray[np.float64]
 
@@ -64,6 +65,8 @@ class StartPhoto:
         What the camera's numbers begin with; None where only its picture is known.
     position_enu_m, covariance
         Where it was taken, shape (3,), and how well that is known, shape (3, 3); None where nothing says so.
+    mask
+        A picture that is black where features do not count; None where all do.
     """
 
     name: str
@@ -71,12 +74,13 @@ class StartPhoto:
     lens: Intrinsics | None = None
     position_enu_m: Array | None = None
     covariance: Array | None = None
+    mask: Path | None = None
 
     @classmethod
     def of(cls, photo: PosedPhoto) -> StartPhoto:
         """Of a photo with a pose."""
         place = photo.pose.position_enu_m
-        return cls(photo.name, photo.intrinsics, photo.intrinsics, place, position_covariance(photo))
+        return cls(photo.name, photo.intrinsics, photo.intrinsics, place, position_covariance(photo), photo.mask)
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,7 +242,8 @@ class ColmapRun:
             self._write_positions(database)
             is_matched = database.num_matched_image_pairs() > 0
         if not is_matched:  # matches name features by their rows
-            keep_largest(self.database, self.parameters.max_features)
+            masks = {photo.name: photo.mask for photo in self.photos if photo.mask is not None}
+            keep_counted(self.database, self.parameters.max_features, masks)
         return kept
 
     def _features_known(self) -> tuple[dict[str, int], int]:
@@ -559,24 +564,41 @@ def look_one_way(forwards: Array) -> bool:
     return float(np.median(np.arccos(np.clip(cosines, -1.0, 1.0)))) <= LEAST_APART_RAD
 
 
-def keep_largest(path: Path, n_most: int) -> None:
-    """Take all but the largest features of each photo out of a database that has no matches yet.
+def keep_counted(path: Path, n_most: int, masks: Mapping[str, Path] | None = None) -> None:
+    """Take features out of a database that has no matches yet: what a photo's mask has black, and all but the largest.
 
     COLMAP takes its limit for whole levels of scale: of grass and gravel it finds up to twice as many, which take four
     times as long to match.
+
+    Parameters
+    ----------
+    masks
+        By photos' names.
     """
+    masks = {} if masks is None else masks
     with closing(sqlite3.connect(path)) as database, database:
-        over = database.execute("SELECT image_id, rows, cols, data FROM keypoints WHERE rows > ?", (n_most,))
-        for image, n_rows, n_columns, data in over.fetchall():
-            numbers = np.frombuffer(data, np.float32).reshape(n_rows, n_columns)
+        photos = database.execute(
+            "SELECT image_id, name, width, height, rows FROM images JOIN cameras USING (camera_id) "
+            "JOIN keypoints USING (image_id)"
+        )
+        for image, name, width, height, n_rows in photos.fetchall():
+            mask = masks.get(name)
+            if n_rows == 0 or (n_rows <= n_most and mask is None):
+                continue
+            columns, data = database.execute("SELECT cols, data FROM keypoints WHERE image_id = ?", (image,)).fetchone()
+            numbers = np.frombuffer(data, np.float32).reshape(n_rows, columns)
             # x, y and either the scale or a matrix, whose first column is as long as the scale.
-            scales = numbers[:, 2] if n_columns == 4 else np.hypot(numbers[:, 2], numbers[:, 4])
-            chosen = np.sort(np.argsort(-scales, kind="stable")[:n_most])
+            scales = numbers[:, 2] if columns == 4 else np.hypot(numbers[:, 2], numbers[:, 4])
+            counted = np.arange(n_rows)
+            if mask is not None:
+                x, y = (numbers[:, axis].astype(int).clip(0, most - 1) for axis, most in enumerate((width, height)))
+                counted = np.flatnonzero(mask_of_size(mask, width, height)[y, x])
+            chosen = np.sort(counted[np.argsort(-scales[counted], kind="stable")[:n_most]])
             for table in ("keypoints", "descriptors"):
                 (content,) = database.execute(f"SELECT data FROM {table} WHERE image_id = ?", (image,)).fetchone()
                 rows = np.frombuffer(content, np.uint8).reshape(n_rows, -1)[chosen]
                 database.execute(
-                    f"UPDATE {table} SET rows = ?, data = ? WHERE image_id = ?", (n_most, rows.tobytes(), image)
+                    f"UPDATE {table} SET rows = ?, data = ? WHERE image_id = ?", (len(rows), rows.tobytes(), image)
                 )
 
 

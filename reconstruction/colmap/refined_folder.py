@@ -251,7 +251,7 @@ class _Record:
 
 
 def fingerprint(photos: Sequence[PosedPhoto]) -> str:
-    """Checksum of photos: their names, sizes and poses as their metadata give them, in the site's frame.
+    """Checksum of photos: their names, sizes and masks, and poses by their metadata, in the site's frame.
 
     Raises
     ------
@@ -266,7 +266,9 @@ def fingerprint(photos: Sequence[PosedPhoto]) -> str:
             raise InputError(say("cannot be read any more ({})", error.strerror or error, place=photo.path)) from error
         place = np.round(photo.pose.position_enu_m, LENGTH_DECIMALS) + 0.0  # no negative zero
         turn = np.round(photo.pose.cam_from_enu, TURN_DECIMALS) + 0.0
-        digest.update(repr((photo.name, n_bytes, place.tolist(), turn.tolist(), photo.intrinsics)).encode())
+        mask = () if photo.mask is None else (photo.mask.name, hashlib.sha256(photo.mask.read_bytes()).hexdigest())
+        said = (photo.name, n_bytes, place.tolist(), turn.tolist(), photo.intrinsics, *mask)
+        digest.update(repr(said).encode())
     return digest.hexdigest()
 
 

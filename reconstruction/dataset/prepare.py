@@ -38,8 +38,7 @@ from reconstruction.photos.decode import (
     check_whole,
     decoded,
     is_named_rightly,
-    read_mask,
-    resized_mask,
+    mask_of_size,
 )
 
 Array = NDArray[np.float64]
@@ -358,27 +357,9 @@ def _photo(
 
 
 def mask_of(photo: PosedPhoto) -> NDArray[np.bool_]:
-    """Which pixels of a photo count by its mask, of the size of its camera, shape (h, w).
-
-    Raises
-    ------
-    InputError
-        The mask cannot be read, has another shape than the photo, or leaves nothing of it.
-    """
+    """Which pixels of a photo count by its mask, of the size of its camera, shape (h, w): `mask_of_size`."""
     assert photo.mask is not None
-    mask, lens = read_mask(photo.mask), photo.intrinsics
-    height, width = mask.shape
-    if abs(height - lens.height_px * width / lens.width_px) > 1.0:
-        raise InputError(
-            say(
-                "has {} x {} pixels, and the photo's camera {} x {}",
-                *(width, height, lens.width_px, lens.height_px),
-                place=photo.mask,
-            )
-        )
-    if not mask.any():
-        raise InputError(say("is black everywhere", place=photo.mask))
-    return resized_mask(mask, lens.width_px, lens.height_px)
+    return mask_of_size(photo.mask, photo.intrinsics.width_px, photo.intrinsics.height_px)
 
 
 def layer_path(folder: Path, layer: str, name: str) -> Path:

@@ -196,6 +196,25 @@ def read_mask(path: Path) -> NDArray[np.bool_]:
     return np.asarray(values >= MASK_THRESHOLD * full)
 
 
+def mask_of_size(path: Path, width_px: int, height_px: int) -> NDArray[np.bool_]:
+    """Which pixels of a picture of a size count by its mask, shape (h, w).
+
+    Raises
+    ------
+    InputError
+        The mask cannot be read, has another shape than the picture, or leaves nothing of it.
+    """
+    mask = read_mask(path)
+    height, width = mask.shape
+    if abs(height - height_px * width / width_px) > 1.0:
+        raise InputError(
+            say("has {} x {} pixels, and the photo's camera {} x {}", *(width, height, width_px, height_px), place=path)
+        )
+    if not mask.any():
+        raise InputError(say("is black everywhere", place=path))
+    return resized_mask(mask, width_px, height_px)
+
+
 def resized_mask(mask: NDArray[np.bool_], width_px: int, height_px: int) -> NDArray[np.bool_]:
     """A mask of a size, each pixel with the value of the nearest one."""
     if mask.shape == (height_px, width_px):

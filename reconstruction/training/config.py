@@ -195,7 +195,7 @@ class TrainConfig:
         room for too few steps, windows are smaller: `trainer.ENOUGH_STEPS`.
     reduce
         Pixels of a photo, along each side, that one is made of before it is learned from; 0 for as many as leave some
-        windows of it: `start.usual_reduce`.
+        windows of it: `photos.decoded_photo.usual_reduce`.
     raster
         Settings of the rasteriser, but for its threads. Splats are antialiased, other than in 2DGS and 3DGS: frames are
         finer than a pixel in many photos (`python -m tests.tables --only 3b`).

@@ -28,20 +28,25 @@ class PresetRow:
         In the window's list.
     minutes
         That a training takes at most; None where it ends by its steps, and nobody would wait for its model.
+    window_px
+        Pixels of the part of a photo that a step looks at, at most.
     """
 
     what: str
     label: str = ""
     minutes: float | None = None
+    window_px: int = 256 * 192
 
 
 PRESETS = {
     "10min": PresetRow(say("small photos or a first look"), "10 minutes", 10.0),
-    "1h": PresetRow(say("for photos of some hundred pixels' width, or windows of larger ones"), "1 hour", 60.0),
-    "overnight": PresetRow(
-        say("the paper's network and number of steps, as far as they go"), "overnight, 10 hours", 600.0
+    "1h": PresetRow(
+        say("for photos of some hundred pixels' width, or windows of larger ones"), "1 hour", 60.0, 384 * 288
     ),
-    "smoke": PresetRow("a minute; shows that everything works, and nothing else"),
+    "overnight": PresetRow(
+        say("the paper's network and number of steps, as far as they go"), "overnight, 10 hours", 600.0, 768 * 576
+    ),
+    "smoke": PresetRow("a minute; shows that everything works, and nothing else", window_px=96 * 72),
 }
 
 DEFAULT_PRESET = "10min"

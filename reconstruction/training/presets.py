@@ -24,7 +24,6 @@ _CONFIGS = {
         iterations=30_000,
         n_splats=25_000,
         max_splats=80_000,
-        window_px=384 * 288,
         reflections=ReflectionConfig(
             mlp=MlpShape(width=256, layers=6, position_order=10, direction_order=6),
             steps=3000,
@@ -35,14 +34,12 @@ _CONFIGS = {
         iterations=200_000,
         n_splats=60_000,
         max_splats=300_000,
-        window_px=768 * 576,
         reflections=ReflectionConfig(mlp=PAPER_MLP, steps=20_000, passes=60.0),
     ),
     "smoke": TrainConfig(
         iterations=60,
         n_splats=1500,
         max_splats=2500,
-        window_px=96 * 72,
         reflections=ReflectionConfig(steps=60, batch=1024, environment_rows=32, grid=GridSettings(most_cells=1 << 18)),
         score_every_s=5.0,
     ),
@@ -59,8 +56,9 @@ def preset(name: str) -> TrainConfig:
     """
     if name not in _CONFIGS:
         raise InputError(say("expected {}, got '{}'", ", ".join(PRESETS), name, place="--preset"))
-    minutes = PRESETS[name].minutes
-    return replace(_CONFIGS[name], time_limit_s=None if minutes is None else minutes * MINUTE_S)
+    row = PRESETS[name]
+    limit_s = None if row.minutes is None else row.minutes * MINUTE_S
+    return replace(_CONFIGS[name], time_limit_s=limit_s, window_px=row.window_px)
 
 
 def with_request(base: TrainConfig, request: TrainRequest) -> TrainConfig:

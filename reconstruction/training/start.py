@@ -51,6 +51,7 @@ from reconstruction.training.methods.shader import Shader, Surroundings
 from reconstruction.training.methods.shaders import converted_for_method, shader_of, with_primitive
 from reconstruction.training.model.joint_model import SceneModel
 from reconstruction.training.model.record import SiteRecord, site_record
+from reconstruction.training.photos.decoded_photo import usual_reduce
 from reconstruction.training.photos.exposures import Exposures, told_by_points
 from reconstruction.training.photos.photo_stream import PhotoStream, StreamSettings
 from reconstruction.training.photos.poses import Move, PoseCorrections, learned_moves, moved
@@ -293,18 +294,6 @@ def _panels_seen(
             yield sample.view, sample.panels.numpy()
 
 
-WINDOWS, LEAST_LEARNED_PX = 4, 4 * 256 * 192
-"""Windows of a photo that is made smaller, at least, and pixels that are left of it. A photo is seen as often as
-windows show it: at full size, 446 windows of 12 photos of 1296 x 1936 pixels gave 14 dB on an unseen one, and 1227 of
-photos of 257 x 384 pixels 27 dB."""
-
-
-def usual_reduce(photos: Sequence[PosedPhoto], window_px: int) -> int:
-    """By how much photos are made smaller along each side, so that windows show all of them often; 1 for small ones."""
-    largest_px = max(photo.intrinsics.width_px * photo.intrinsics.height_px for photo in photos)
-    return max(1, math.isqrt(largest_px // max(WINDOWS * window_px, LEAST_LEARNED_PX)))
-
-
 def _said_smaller(photos: Sequence[PosedPhoto], reduce: int) -> str:
     """That photos are made smaller."""
     largest = max((photo.intrinsics for photo in photos), key=lambda lens: lens.width_px * lens.height_px)
@@ -412,7 +401,7 @@ def start_model(
     watch = watch or Timer()
     notes: tuple[str, ...] = ()
     if config.reduce == 0:
-        config = replace(config, reduce=usual_reduce(source.photos, config.window_px))
+        config = replace(config, reduce=usual_reduce([photo.intrinsics for photo in source.photos], config.window_px))
         notes = () if config.reduce == 1 else (_said_smaller(source.photos, config.reduce),)
     held_out = held_out_names([photo.name for photo in source.photos], config.held_out, config.seed)
     learned = tuple(photo for photo in source.photos if photo.name not in held_out)

@@ -112,15 +112,19 @@ class MachineTexts(QObject):
         return lines
 
     def _photos(self, card: DataSetCard, forecast: Forecast) -> list[StatusLine]:
-        lens = card.source.photos[0].intrinsics
-        lines: list[StatusLine] = [
-            (
-                "",
-                self.tr("{0} photos of {1} x {2} pixels take {3} of memory when they are decoded.").format(
-                    len(card.source.photos), lens.width_px, lens.height_px, size_text(forecast.photos_bytes)
-                ),
+        lens, reduce = card.source.photos[0].intrinsics, forecast.reduce
+        n_photos, size = len(card.source.photos), size_text(forecast.photos_bytes)
+        wide, high = lens.width_px, lens.height_px
+        said = (
+            self.tr("{0} photos of {1} x {2} pixels take {3} of memory when they are decoded.").format(
+                n_photos, wide, high, size
             )
-        ]
+            if reduce == 1
+            else self.tr(
+                "{0} photos of {1} x {2} pixels are learned from at {3} x {4}; decoded, they take {5} of memory."
+            ).format(n_photos, wide, high, wide // reduce, high // reduce, size)
+        )
+        lines: list[StatusLine] = [("", said)]
         if forecast.all_fit:
             lines.append(("", self.tr("All of them fit, and each is read once.")))
         else:

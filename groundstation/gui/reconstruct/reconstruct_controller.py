@@ -96,8 +96,7 @@ class FolderController(QObject):
 
     def forecast(self) -> Forecast | None:
         """What memory the training would ask for."""
-        knows = method_named(self.choice.method).knows_panels
-        return None if self.card is None else forecast(self.card, self.machine, knows)
+        return None if self.card is None else forecast(self.card, self.machine, self.choice)
 
     def unseen(self) -> frozenset[str]:
         """Names of photos that are not learned from."""

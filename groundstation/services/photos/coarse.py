@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from groundstation.services.photos.dataset import PreparedFiles, prepare_files
-from groundstation.services.photos.poses import poses_within
+from groundstation.services.photos.poses import masks_of, poses_within
 from planning.base.effects import Decision
 from planning.base.errors import InputError
 from planning.base.files import check_folder_name
@@ -111,6 +111,7 @@ def coarse_files(request: CoarseRequest, monitor: Monitor = QUIET) -> CoarseFile
     read = read_photos(request.photos, monitor)
     names = {photo.path.relative_to(request.photos).as_posix(): photo for photo in read.photos}
     sizes = {name: (photo.width_px, photo.height_px) for name, photo in names.items()}
+    masks, about_masks = masks_of(tuple(names), request.photos)
     stated = Stated(
         None if request.camera is None else read_lens(request.camera, sizes),
         () if request.control is None else read_control_points(request.control, sizes),
@@ -119,6 +120,7 @@ def coarse_files(request: CoarseRequest, monitor: Monitor = QUIET) -> CoarseFile
         request.heights,
         None if request.lens is None else CameraKind(request.lens),
         request.dense,
+        masks,
     )
     coarse = build_coarse(request.photos, read.photos, request.out / KEPT, stated, parameters, monitor)
     monitor.report(say("writing the coarse model"), 0, 0)
@@ -126,8 +128,9 @@ def coarse_files(request: CoarseRequest, monitor: Monitor = QUIET) -> CoarseFile
     taken_from = {"photos": str(request.photos.resolve())}
     write_atomically(request.out / KEPT / PHOTOS_FILE, json.dumps(taken_from).encode())
     report = coarse_report(coarse)
+    findings = (*read.findings, *about_masks, *coarse.findings, *findings)
     write_atomically(request.out / REPORT_FILE, json.dumps(report, indent=1).encode())
-    return CoarseFiles(request.out / SITE_FILE, report, coarse.decision, (*read.findings, *coarse.findings, *findings))
+    return CoarseFiles(request.out / SITE_FILE, report, coarse.decision, findings)
 
 
 def coarse_files_in_process(

@@ -207,9 +207,10 @@ def choose_poses(
     if colmap is None:
         return ChosenPoses(posed.photos)
     if is_refined_folder(colmap):
-        kept = read_refined(colmap, posed.photos)
-        if kept.photos_sha256 == fingerprint(posed.photos):
-            return _judged(posed.photos, kept, colmap, was_kept=True)
+        masked = _masked(posed.photos, folder)
+        kept = read_refined(colmap, masked)
+        if kept.photos_sha256 == fingerprint(masked):
+            return _judged(masked, kept, colmap, was_kept=True)
     model, masks = read_poses(colmap)
     found = _fitted(_of_model(named_below(model, folder), read_frame(colmap), posed, folder), posed.sizes_px)
     return replace(found, masks=masks)
@@ -247,36 +248,48 @@ MASKS = "masks"
 
 
 def with_masks(chosen: ChosenPoses, folder: Path) -> ChosenPoses:
-    """Photos with the masks that their model names, or that lie beside them as COLMAP has them; and what is missing.
+    """Photos with their masks, and what is missing of these: `masks_of`."""
+    masks, findings = masks_of([photo.name for photo in chosen.photos], folder, chosen.masks)
+    photos = tuple(replace(photo, mask=masks.get(photo.name)) for photo in chosen.photos)
+    return replace(chosen, photos=photos, findings=(*chosen.findings, *findings))
+
+
+def masks_of(
+    names: Sequence[str], folder: Path, stated: Mapping[str, Path] | None = None
+) -> tuple[dict[str, Path], tuple[Finding, ...]]:
+    """Masks of photos, by their names: those that are stated, or that lie beside as COLMAP has them; what is missing.
 
     Parameters
     ----------
+    names
+        Paths of photos below the folder.
     folder
-        What the photos' names are paths below; the folder of masks is beside it, or in it.
+        Of the photos; the folder of masks is beside it, or in it.
+    stated
+        By absolute paths of photos.
     """
-    beside, masks = _folder_of_masks(folder), list[Path | None]()
-    for photo in chosen.photos:
-        names = (str(root / photo.name) for root in (folder.absolute(), folder.resolve()))
-        found = next((chosen.masks[name] for name in names if name in chosen.masks), None)
+    beside, masks, stated = _folder_of_masks(folder), dict[str, Path](), {} if stated is None else stated
+    for name in names:
+        wholes = (str(root / name) for root in (folder.absolute(), folder.resolve()))
+        found = next((stated[whole] for whole in wholes if whole in stated), None)
         if found is None and beside is not None:
-            places = beside / f"{photo.name}.png", (beside / photo.name).with_suffix(".png")
+            places = beside / f"{name}.png", (beside / name).with_suffix(".png")
             found = next((place for place in places if place.is_file()), None)
-        masks.append(found)
-    lost = [mask for mask in masks if mask is not None and not mask.is_file()]
-    without = [photo.name for photo, mask in zip(chosen.photos, masks, strict=True) if mask is None]
-    findings = list(chosen.findings)
+        if found is not None:
+            masks[name] = found
+    lost = {name: mask for name, mask in masks.items() if not mask.is_file()}
+    without = [name for name in names if name not in masks]
+    findings = []
     if lost:
-        text = say("{} masks are not there, the first {}: all pixels of their photos count", len(lost), lost[0])
+        first = next(iter(lost.values()))
+        text = say("{} masks are not there, the first {}: all pixels of their photos count", len(lost), first)
         findings.append(Finding(Severity.WARNING, "masks-missing", text, "", float(len(lost)), 0.0, "photos"))
-    if 0 < len(without) < len(masks):
+    if 0 < len(without) < len(names):
         text = say(
-            "{} of {} photos have no mask, the first {}: all their pixels count", len(without), len(masks), without[0]
+            "{} of {} photos have no mask, the first {}: all their pixels count", len(without), len(names), without[0]
         )
         findings.append(Finding(Severity.NOTE, "photos-unmasked", text, "", float(len(without)), 0.0, "photos"))
-    photos = (
-        replace(photo, mask=None if mask in lost else mask) for photo, mask in zip(chosen.photos, masks, strict=True)
-    )
-    return replace(chosen, photos=tuple(photos), findings=tuple(findings))
+    return {name: mask for name, mask in masks.items() if name not in lost}, tuple(findings)
 
 
 def _folder_of_masks(folder: Path) -> Path | None:
@@ -552,7 +565,7 @@ def refined_poses(
     ReconstructionError
         The photos do not fit together.
     """
-    where = request.kept_in(folder)
+    where, photos = request.kept_in(folder), _masked(photos, folder)
     kept = _stored_refinement(where, photos, request)
     if kept is not None:
         return _judged(photos, kept, where, was_kept=True)
@@ -566,6 +579,12 @@ def refined_poses(
     refinement = refine_poses(photos, folder, parameters, monitor)
     write_refined(where, refinement, photos, parameters)
     return _judged(photos, read_refined(where, photos), where, was_kept=False)
+
+
+def _masked(photos: Sequence[PosedPhoto], folder: Path) -> tuple[PosedPhoto, ...]:
+    """Photos with the masks that lie beside them: features of pixels that do not count would move cameras."""
+    masks, _ = masks_of([photo.name for photo in photos], folder)
+    return tuple(replace(photo, mask=masks[photo.name]) if photo.name in masks else photo for photo in photos)
 
 
 def findings_that_hold(posed: PhotoSet, better: ChosenPoses) -> tuple[Finding, ...]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from groundstation.services.reconstruct.folders import DataSetCard
 from reconstruction.training.method_registry import DEFAULT_METHOD, method_named, training_methods
 from reconstruction.training.parameters import DEFAULT_PRESET, PRESETS, TrainRequest
-from reconstruction.training.photos.decoded_photo import DECODING_BYTES_PER_PX, Decoding, decoded_bytes
+from reconstruction.training.photos.decoded_photo import DECODING_BYTES_PER_PX, Decoding, decoded_bytes, usual_reduce
 
 LONGEST_MIN = 7 * 24 * 60
 
@@ -148,6 +148,8 @@ class Forecast:
 
     Parameters
     ----------
+    reduce
+        Pixels of photos, along each side, that make one that is learned from.
     photos_bytes
         Of all decoded photos.
     least_bytes
@@ -158,6 +160,7 @@ class Forecast:
         All in all, at most.
     """
 
+    reduce: int
     photos_bytes: int
     least_bytes: int
     limit_bytes: int
@@ -174,10 +177,12 @@ class Forecast:
         return self.limit_bytes < USUAL_MEMORY_BYTES
 
 
-def forecast(card: DataSetCard, machine: Machine, knows_panels: bool) -> Forecast:
+def forecast(card: DataSetCard, machine: Machine, choice: TrainChoice) -> Forecast:
     """What memory a training on a data set would ask for on a computer."""
-    decoding = Decoding(1, knows_panels)
+    knows_panels = method_named(choice.method).knows_panels
     lenses = Counter(photo.intrinsics for photo in card.source.photos)
+    reduce = usual_reduce(lenses, PRESETS[choice.request().preset].window_px)
+    decoding = Decoding(reduce, knows_panels)
     sizes = {lens: decoded_bytes(lens, decoding, card.normal_step) for lens in lenses}
     whole = sum(n * sizes[lens] for lens, n in lenses.items())
     least = DECODING_BYTES_PER_PX * card.largest_px + max(sizes.values())
@@ -185,4 +190,4 @@ def forecast(card: DataSetCard, machine: Machine, knows_panels: bool) -> Forecas
     limit = USUAL_MEMORY_BYTES if free is None else min(USUAL_MEMORY_BYTES, int(MEMORY_SHARE * free))
     limit = max(limit, int(least / STREAM_SHARE) + 1)
     held = min(whole + least, limit)
-    return Forecast(whole, least, limit, PROGRAM_BYTES + held + (limit if knows_panels else 0))
+    return Forecast(reduce, whole, least, limit, PROGRAM_BYTES + held + (limit if knows_panels else 0))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -116,6 +118,18 @@ def reduced(lens: Intrinsics, reduce: int) -> Intrinsics:
         cx_px=lens.cx_px / reduce,
         cy_px=lens.cy_px / reduce,
     )
+
+
+WINDOWS, LEAST_LEARNED_PX = 4, 4 * 256 * 192
+"""Windows of a photo that is made smaller, at least, and pixels that are left of it. A photo is seen as often as
+windows show it: at full size, 446 windows of 12 photos of 1296 x 1936 pixels gave 14 dB on an unseen one, and 1227 of
+photos of 257 x 384 pixels 27 dB."""
+
+
+def usual_reduce(lenses: Collection[Intrinsics], window_px: int) -> int:
+    """By how much photos are made smaller along each side, so that windows show all of them often; 1 for small ones."""
+    largest_px = max(lens.width_px * lens.height_px for lens in lenses)
+    return max(1, math.isqrt(largest_px // max(WINDOWS * window_px, LEAST_LEARNED_PX)))
 
 
 def decoded_bytes(lens: Intrinsics, decoding: Decoding, normal_step: int) -> int:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from datetime import datetime, timedelta
 from pathlib import Path
 
+import cv2
+import numpy as np
 import pytest
 
 from groundstation.services.photos.coarse import coarse_files
@@ -47,6 +49,19 @@ def test_damaged_photos_are_left_out_and_told_before_they_are_too_few(tmp_path):
         InputError, match=r"needs at least 3 photos, and 2 of 4 are whole; the first other: .*0\.jpg: a p"
     ):
         coarse_files(CoarseRequest(tmp_path / "card", tmp_path / "out"))
+
+
+@pytest.mark.parametrize("place", ["card/masks", "masks"])
+def test_masks_that_do_not_fit_their_photos_are_told(tmp_path, place):
+    photos = tmp_path / "card" / "images" if place == "card/masks" else tmp_path / "images"
+    photos.parent.mkdir(exist_ok=True)
+    for number in range(4):
+        write(photos, f"{number}.jpg")
+    (tmp_path / place).mkdir()
+    for number, size in enumerate([(7, 9), (8, 8)]):
+        cv2.imwrite(str(tmp_path / place / f"{number}.jpg.png"), np.zeros(size, np.uint8))
+    with pytest.raises(InputError, match=r"2 of 4 are whole; the first other: its mask cannot be used \(.*it was left"):
+        coarse_files(CoarseRequest(photos, tmp_path / "out"))
 
 
 def test_copies_of_one_photo_count_once(tmp_path):

@@ -17,7 +17,7 @@ from reconstruction.base.cameras import Intrinsics, Pose, PosedPhoto
 from reconstruction.colmap import refine
 from reconstruction.colmap.folder import read_model, write_model
 from reconstruction.colmap.georeference import Similarity, angle_between_deg, georeference, posed_photos
-from reconstruction.colmap.pycolmap_run import ColmapRun, Fit, FoundLens, StartPhoto, keep_largest
+from reconstruction.colmap.pycolmap_run import ColmapRun, Fit, FoundLens, StartPhoto, keep_counted
 from reconstruction.colmap.record import camera_of
 from reconstruction.colmap.refine import RefineParameters, _covariances, refine_poses
 from tests.reconstruction.colmap.models import covariance, model, photos, turned
@@ -65,12 +65,42 @@ def test_the_largest_features_are_kept_in_their_order(tmp_path, n_columns):
             database.write_descriptors(
                 image, colmap.FeatureDescriptors(colmap.FeatureExtractorType.SIFT, descriptors[:n])
             )
-    keep_largest(path, 30)
+    keep_counted(path, 30)
     large = scales > 20.0
     with colmap.Database.open(path) as database:
         for image, rows in ((1, large), (2, slice(0, 30))):
             assert np.array_equal(np.asarray(database.read_keypoints(image)), keypoints[rows])
             assert np.array_equal(np.asarray(database.read_descriptors(image).data), descriptors[rows])
+
+
+@pytest.mark.parametrize("size_px", [900, 300])
+def test_features_of_pixels_that_a_mask_has_black_do_not_count(tmp_path, size_px):
+    colmap = pytest.importorskip("pycolmap", reason="pycolmap is not installed (pip install .[colmap])")
+    rng = np.random.default_rng(1)
+    x = np.concatenate([rng.uniform(0.0, 449.9, 30), rng.uniform(450.0, 900.0, 20)])
+    keypoints = np.column_stack([x, rng.uniform(0.0, 900.0, 50), np.arange(1.0, 51.0), np.zeros(50)]).astype(np.float32)
+    mask = np.zeros((size_px, size_px), np.uint8)
+    mask[:, size_px // 2 :] = 255
+    cv2.imwrite(str(tmp_path / "mask.png"), mask)
+    descriptors = rng.integers(0, 255, (50, 128)).astype(np.uint8)
+    path = tmp_path / "features.db"
+    with colmap.Database.open(path) as database:
+        camera = database.write_camera(colmap.Camera.create_from_model_name(1, "PINHOLE", 900.0, 900, 900))
+        for name, n in (("card/a.jpg", 50), ("b.jpg", 50), ("black.jpg", 30), ("empty.jpg", 0)):
+            image = database.write_image(colmap.Image(name=name, camera_id=camera))
+            database.write_keypoints(image, keypoints[:n])
+            database.write_descriptors(
+                image, colmap.FeatureDescriptors(colmap.FeatureExtractorType.SIFT, descriptors[:n])
+            )
+    masks = dict.fromkeys(("card/a.jpg", "black.jpg", "empty.jpg"), tmp_path / "mask.png")
+    kept = [np.arange(35, 50), np.arange(35, 50), np.arange(0), np.arange(0)]
+    for _ in range(2):  # a run that was interrupted goes on with what it left
+        keep_counted(path, 15, masks)
+        with colmap.Database.open(path) as database:
+            for number, rows in enumerate(kept, 1):
+                assert np.array_equal(np.asarray(database.read_keypoints(number)).reshape(-1, 4), keypoints[rows])
+                found = np.asarray(database.read_descriptors(number).data).reshape(-1, 128)
+                assert np.array_equal(found, descriptors[rows])
 
 
 @pytest.mark.parametrize("tilt_deg", [0.0, 25.0])

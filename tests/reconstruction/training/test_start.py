@@ -2,7 +2,6 @@
 
 import shutil
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,8 +17,9 @@ from reconstruction.light.photo_set import read_photo_set
 from reconstruction.splats.splats import NO_PANEL
 from reconstruction.training import start as start_module
 from reconstruction.training.config import TrainConfig
-from reconstruction.training.start import SeparateLight, start_model, usual_reduce
-from tests.reconstruction.light.synthetic_folder import LENS, cameras, far
+from reconstruction.training.photos.decoded_photo import usual_reduce
+from reconstruction.training.start import SeparateLight, start_model
+from tests.reconstruction.light.synthetic_folder import LENS, far
 from tests.reconstruction.training.synthetic_data_set import write_data_set
 
 WALL_Y_M = 0.5
@@ -181,8 +181,7 @@ def test_light_apart_is_as_asked_and_nothing_is_tried_for_it(tmp_path, monkeypat
 )
 def test_photos_are_made_as_small_as_some_windows_cover(size_px, window_px, wanted):
     width, height = size_px
-    photos = cameras(Path(), 2, lens=LENS) + cameras(Path(), 1, lens=LENS.scaled(width, height))
-    assert usual_reduce(photos, window_px) == wanted
+    assert usual_reduce([LENS, LENS, LENS.scaled(width, height)], window_px) == wanted
 
 
 @pytest.mark.slow

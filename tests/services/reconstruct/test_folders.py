@@ -2,6 +2,7 @@
 
 import json
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -180,19 +181,29 @@ def test_light_is_wished_only_of_methods_that_know_panels():
 
 
 def test_memory_is_told_and_taken_from_what_is_free(card):
-    plenty = forecast(card, Machine(4, 1 << 40, 1 << 40), True)
+    plenty = forecast(card, Machine(4, 1 << 40, 1 << 40), TrainChoice())
     assert plenty.limit_bytes == USUAL_MEMORY_BYTES
     assert plenty.photos_bytes == 4 * (6 * 1200 + 6 * 20 * 15)
     assert plenty.all_fit
     assert not plenty.is_reduced
-    short = forecast(card, Machine(1, 1 << 30, 400 << 20), True)
+    short = forecast(card, Machine(1, 1 << 30, 400 << 20), TrainChoice())
     assert short.limit_bytes == 100 << 20
     assert short.is_reduced
     # However little is free, one photo must have room.
-    least = forecast(card, Machine(1, 1 << 30, 0), False)
+    least = forecast(card, Machine(1, 1 << 30, 0), TrainChoice("2dgs"))
     assert least.limit_bytes * 0.75 >= least.least_bytes
-    unknown = forecast(card, Machine(1, None, None), True)
+    unknown = forecast(card, Machine(1, None, None), TrainChoice())
     assert unknown.limit_bytes == USUAL_MEMORY_BYTES
+
+
+@pytest.mark.parametrize(("minutes", "reduce"), [(10.0, 10), (60.0, 6), (600.0, 3)])
+def test_memory_is_that_of_photos_as_they_are_learned_from(card, minutes, reduce):
+    lens = card.source.photos[0].intrinsics
+    large = [replace(photo, intrinsics=lens.scaled(5280, 3956)) for photo in card.source.photos]
+    card = replace(card, source=replace(card.source, photos=tuple(large)))
+    found = forecast(card, Machine(4, 1 << 40, 1 << 40), TrainChoice("2dgs", minutes=minutes))
+    assert found.reduce == reduce
+    assert found.photos_bytes == 4 * 6 * (5280 // reduce) * (3956 // reduce)
 
 
 def test_this_machine_has_a_core_and_no_more_free_memory_than_there_is():
