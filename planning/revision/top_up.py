@@ -30,7 +30,7 @@ from planning.planner import plan_records
 from planning.revision.closing_flights import Batteries, ClosingFlights, ClosingTask, closing_flights
 from planning.site.records import SiteModel
 from planning.viewpoints.prepare import Prepared, prepare, with_site_limits
-from planning.viewpoints.problem import NONE_LOCKED
+from planning.viewpoints.problem import NONE_LOCKED, nothing_to_see
 
 METHOD = "top-up"
 
@@ -192,8 +192,8 @@ def top_up(
     ValueError
         The site was prepared for another camera or other constraints.
     InfeasibleError
-        Nothing of what is missing can be shown, and it is more than a negligible rest; the message says whether the
-        site or the battery is the reason.
+        Nothing is to be seen from where flying is allowed; or nothing of what is missing can be shown, and it is more
+        than a negligible rest: the message says whether the site or the battery is the reason.
     """
     started_s = time.perf_counter()
     trace = Trace() if trace is None else trace
@@ -204,6 +204,8 @@ def top_up(
     verdicts = problem.reachability.verdicts.reshape(-1)
     seen, promised = _shown(prepared, taken), _shown(prepared, planned)
     target = promised if request.target is Target.PROMISED else promised | (verdicts == REACHABLE)
+    if not target.any():
+        raise nothing_to_see()
     elements = np.flatnonzero(target & ~seen)
     durations, found, topped_up = Trace(trace.clock), None, None
     if len(elements):

@@ -122,6 +122,7 @@ def test_flights_whose_worth_is_recorded_are_not_flown_again(monkeypatch: pytest
     assert len(flown) <= 2, "only what is not recorded"
 
 
+@pytest.mark.long
 def test_a_real_benchmark_runs_quickly_end_to_end(tmp_path: Path) -> None:
     assert main(["--quick", "--only", "certificates", "--out", str(tmp_path)]) == 0
     page = (tmp_path / "benchmarks.md").read_text()

@@ -53,6 +53,7 @@ def test_one_plan_alone_is_wrong_usage(reflight, pane):
     assert "PLAN" in done.err
 
 
+@pytest.mark.long
 def test_files_that_are_no_plan_and_plans_of_another_site_are_refused(reflight, pane, fewer, bad_file, tmp_path):
     assert str(bad_file) in reflight("compare", pane / "plan.json", bad_file, "--site", pane / "site.json").error
     assert str(bad_file) in reflight("compare", pane / "plan.json", fewer, "--site", bad_file).error

@@ -47,6 +47,7 @@ def plans_by_profile(tmp_path_factory):
     return folder
 
 
+@pytest.mark.long
 @pytest.mark.skipif(os.name == "nt", reason="pipes of a POSIX system")
 def test_missions_and_plans_go_into_pipes_with_nothing_beside_them(reflight, pane, tmp_path):
     pipe = tmp_path / "pipe"
@@ -80,6 +81,7 @@ def test_every_profile_exports_to_every_format_or_is_refused_with_a_reason(
     assert sum(mission.n_photos for mission in read_missions(out)) == 3
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("file_format", sorted(ENDINGS))
 def test_each_sortie_gets_a_file_and_all_photos_are_in_them(reflight, sorties, tmp_path, file_format):
     plan = read_plan(sorties / "plan.json")

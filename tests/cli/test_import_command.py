@@ -61,6 +61,7 @@ def test_text_tells_the_result_and_the_next_command(reflight, pane, tmp_path):
     assert done.err.splitlines()[-1] == f"next: app.py check {out} {pane / 'site.json'}"
 
 
+@pytest.mark.long
 @pytest.mark.few(4)
 @pytest.mark.parametrize("name", sorted(GOOD))
 def test_missions_of_other_programs_open_at_their_own_place(reflight, pane, changed, shared_data, tmp_path, name):

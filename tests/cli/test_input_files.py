@@ -167,6 +167,7 @@ def test_damaged_json_is_not_called_another_kind(reflight, files, tmp_path):
     assert "not valid JSON, line 1" in reflight("check", damaged, files / "site.json").error
 
 
+@pytest.mark.long
 @pytest.mark.few(2)
 @pytest.mark.parametrize("ending", ["kmz", "plan", "waypoints", "kml", "csv"])
 def test_missions_are_compared_as_plans_of_the_first_ones_aircraft(reflight, files, ending):

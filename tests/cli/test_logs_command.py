@@ -28,6 +28,7 @@ def idle():
     server.close()
 
 
+@pytest.mark.long
 def test_a_vehicle_that_never_flew_has_no_logs(reflight, idle):
     assert "there are no logs on the vehicle" in reflight("logs", idle).error
     assert "there are no logs on the vehicle" in reflight("logs", idle, "--list").error

@@ -69,6 +69,7 @@ def test_a_site_gets_its_panels_anew_and_keeps_the_rest(flight, found, reflight,
     assert other.site.n_panels == len(made[0].panels)
 
 
+@pytest.mark.long
 def test_wrong_input_is_refused_in_words(flight, reflight, tmp_path):
     folder, _ = flight
     out = tmp_path / "x.site.json"

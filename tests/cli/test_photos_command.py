@@ -31,6 +31,7 @@ def flown(tmp_path_factory):
     return folder / "photos", office
 
 
+@pytest.mark.long
 def test_photos_tell_what_is_missing_of_the_plan(flown, reflight):
     photos, office = flown
     done = reflight("photos", photos, office.site, "--plan", office.plan, "--json")
@@ -47,6 +48,7 @@ def test_photos_tell_what_is_missing_of_the_plan(flown, reflight):
     assert "occlusion" in text.out
 
 
+@pytest.mark.long
 def test_broken_photos_are_named_and_the_rest_is_read(flown, reflight, tmp_path):
     photos, office = flown
     for path in photos.iterdir():
@@ -60,6 +62,7 @@ def test_broken_photos_are_named_and_the_rest_is_read(flown, reflight, tmp_path)
     assert done.json["covered"] > 0
 
 
+@pytest.mark.long
 def test_wrong_input_is_refused_in_words(flown, reflight, tmp_path):
     photos, office = flown
     assert "expected a folder of photos" in reflight("photos", tmp_path / "none", office.site).error

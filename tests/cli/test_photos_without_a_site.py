@@ -230,6 +230,7 @@ def trained_on(folder):
     return state, [(score.whole, score.whole_flip) for score in scores]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("way", ["colmap", "stems", "nerfstudio"])
 def test_what_lies_under_masks_changes_neither_the_model_nor_its_scores(reflight, tmp_path, way):
     found = []
@@ -293,6 +294,7 @@ def waves(directions):
     return 127.0 + 100.0 * np.sin(5.0 * directions)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("way", ["colmap", "nerfstudio", "instant-ngp"])
 def test_photos_of_a_fisheye_are_made_straight(reflight, tmp_path, way):
     folder = tmp_path / "dome"
@@ -389,6 +391,7 @@ def test_pictures_of_another_kind_than_their_name_says_are_written_as_it_says(re
     assert (cv2.imread(str(data.photos[0].path)) == cv2.imdecode(np.frombuffer(as_jpeg, np.uint8), 1)).all()
 
 
+@pytest.mark.long
 def test_photos_that_say_their_pose_place_the_model(reflight, tmp_path):
     write_photos(tmp_path / "photos")
     true = pose_photos(read_photos(tmp_path / "photos").photos, site_model().site, tmp_path / "photos").photos

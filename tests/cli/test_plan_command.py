@@ -21,6 +21,7 @@ def plan_json(reflight, site, out, *options):
     return done.json
 
 
+@pytest.mark.long
 def test_json_holds_what_the_contract_promises_and_agrees_with_the_file(reflight, pane, tmp_path):
     out = tmp_path / "plan.json"
     told = plan_json(reflight, pane / "site.json", out, "--views", 9)
@@ -34,6 +35,7 @@ def test_json_holds_what_the_contract_promises_and_agrees_with_the_file(reflight
     assert told["seconds"] > 0.0
 
 
+@pytest.mark.long
 def test_text_tells_the_pilot_the_result_and_the_next_command(reflight, pane, tmp_path):
     site, out = tmp_path / "my site.json", tmp_path / "plän.json"
     shutil.copy(pane / "site.json", site)
@@ -82,6 +84,7 @@ def test_the_three_goals_are_met(reflight, pane, tmp_path):
     assert one_battery["covered"] >= 0.8 * one_battery["reachable_upper_bound"]
 
 
+@pytest.mark.long
 def test_every_other_option_reaches_the_plan(reflight, pane, tmp_path):
     out = tmp_path / "plan.json"
     options = ["--profile", "m4e", "--min-distance", 8, "--step", 45, "--occlusion", "on", "--max-distance", 30]
@@ -104,6 +107,7 @@ def test_every_other_option_reaches_the_plan(reflight, pane, tmp_path):
     assert told["total"] == 16
 
 
+@pytest.mark.long
 def test_a_pixel_size_becomes_the_distance_at_which_the_camera_reaches_it(reflight, pane, tmp_path):
     out = tmp_path / "plan.json"
     plan_json(reflight, pane / "site.json", out, "--views", 2, "--max-gsd", 5)
@@ -190,6 +194,7 @@ WRONG_VALUES = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("options", "message"), WRONG_VALUES)
 def test_wrong_values_are_refused_with_the_option_that_was_typed(reflight, pane, tmp_path, options, message):
     assert message in reflight("plan", pane / "site.json", "-o", tmp_path / "p.json", "--json", *options).error
@@ -237,6 +242,7 @@ def test_wrong_fields_of_a_site_are_named(reflight, pane, changed, tmp_path, pat
     assert message in error
 
 
+@pytest.mark.long
 def test_fields_that_others_added_and_a_byte_order_mark_do_no_harm(reflight, pane, changed, tmp_path):
     site = changed(pane / "site.json", "weather", {"sky": "clear"})
     site.write_bytes(b"\xef\xbb\xbf" + site.read_bytes())
@@ -273,6 +279,7 @@ def test_a_device_is_written_to_and_not_replaced(reflight, pane):
     )
 
 
+@pytest.mark.long
 def test_a_full_disk_leaves_the_old_plan(reflight, pane, tmp_path, monkeypatch):
     out = tmp_path / "p.json"
     out.write_text("old")

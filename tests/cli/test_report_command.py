@@ -39,6 +39,7 @@ def photos(pane, tmp_path):
     return tmp_path / "photos"
 
 
+@pytest.mark.long
 @pytest.mark.few(2)
 @pytest.mark.parametrize("name", LOGS)
 def test_every_kind_of_log_gives_the_report_and_the_flight(report, pane, tmp_path, name):

@@ -82,6 +82,7 @@ COMMANDS = {
 """Every command that counts what is seen of panels."""
 
 
+@pytest.mark.long
 @pytest.mark.few(4)
 @pytest.mark.parametrize("site", ["bare", "emptied"])
 @pytest.mark.parametrize("command", COMMANDS.values(), ids=COMMANDS)
@@ -94,6 +95,7 @@ def test_what_needs_panels_says_where_they_come_from(reflight, bare, mission, tm
     assert [path for path in out.rglob("*") if path.is_file()] == []
 
 
+@pytest.mark.long
 def test_a_sortie_that_was_interrupted_is_not_resumed_either(reflight, bare, tmp_path):
     flight = json.loads((bare / "office.flight.json").read_text())
     flight["sorties"][0]["photos"] = flight["sorties"][0]["photos"][:2]
@@ -102,6 +104,7 @@ def test_a_sortie_that_was_interrupted_is_not_resumed_either(reflight, bare, tmp
     assert "has no panels yet" in reflight("topup", *given, "--resume", "-o", tmp_path / "rest.json").error
 
 
+@pytest.mark.long
 def test_tours_over_views_need_no_panels(reflight, bare, tmp_path):
     given = (bare / "office.plan.json", bare / "bare.site.json", "-o", tmp_path, "--seconds", 1)
     done = reflight("tradeoff", "route", *given, "--methods", "nearest-neighbour", "--json")
@@ -109,6 +112,7 @@ def test_tours_over_views_need_no_panels(reflight, bare, tmp_path):
     assert len(done.json["tours"]) == 1
 
 
+@pytest.mark.long
 def test_photos_are_checked_and_nothing_is_said_of_coverage(reflight, bare):
     done = reflight("photos", bare / "photos", bare / "bare.site.json", "--json")
     assert done.status == 0, done
@@ -121,6 +125,7 @@ def test_photos_are_checked_and_nothing_is_said_of_coverage(reflight, bare):
     assert "next: app.py panels" in text.err
 
 
+@pytest.mark.long
 def test_a_project_keeps_it(reflight, bare, tmp_path):
     folder = tmp_path / "project"
     assert reflight("project", "new", folder, "--site", bare / "bare.site.json").status == 0
@@ -129,6 +134,7 @@ def test_a_project_keeps_it(reflight, bare, tmp_path):
     assert len(read_site(folder / "site" / "site.json").building.triangles) == 12
 
 
+@pytest.mark.long
 def test_a_site_with_neither_panels_nor_mesh_is_refused(reflight, bare, changed, tmp_path):
     site = changed(bare / "bare.site.json", "building_mesh", ...)
     error = reflight("plan", site, "-o", tmp_path / "p.json").error

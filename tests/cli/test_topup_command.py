@@ -38,6 +38,7 @@ def flown(pane, tmp_path):
     return write
 
 
+@pytest.mark.long
 def test_a_top_up_closes_what_is_missing_and_can_be_checked_and_exported(reflight, pane, flown, tmp_path):
     out = tmp_path / "topup.plan.json"
     done = reflight("topup", flown(2), pane / "plan.json", pane / "site.json", "-o", out, "--time-budget", 1)
@@ -139,6 +140,7 @@ def test_photos_whose_reports_were_lost_are_told_of_with_what_to_do(reflight, pa
     assert ".BIN" in finding["message"]
 
 
+@pytest.mark.long
 def test_resume_writes_the_rest_of_the_sortie(reflight, pane, flown, tmp_path):
     out = tmp_path / "rest.plan.json"
     arguments = (flown(2), pane / "plan.json", pane / "site.json", "-o", out, "--resume")
@@ -152,6 +154,7 @@ def test_resume_writes_the_rest_of_the_sortie(reflight, pane, flown, tmp_path):
     assert (summary["sortie"], summary["views"], summary["first_view"]) == (1, len(ids) - 2, ids[2])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("options", "words"),
     [

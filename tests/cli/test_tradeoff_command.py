@@ -134,6 +134,7 @@ def test_plan_finds_the_site_beside_it_and_asks_for_one_where_there_is_none(site
     assert not (tmp_path / "b").exists()
 
 
+@pytest.mark.long
 @pytest.mark.few(4)
 @pytest.mark.parametrize(
     ("arguments", "message"),

@@ -78,6 +78,7 @@ def cancelled(monkeypatch, reflight, stage, n, *arguments):
         return reflight("train", *arguments)
 
 
+@pytest.mark.long
 def test_a_training_that_was_cancelled_goes_on(reflight, glass, tmp_path, monkeypatch):
     whole = tmp_path / "whole"
     assert reflight("train", glass / "data", "-o", whole, *quick(glass), "--method", "2dgs").status == 0
@@ -362,6 +363,7 @@ def test_what_is_no_model_is_not_organised(reflight, glass, tmp_path):
         scene_of(tmp_path)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "ending"),
     [
@@ -418,6 +420,7 @@ def test_a_page_holds_what_is_attached_to_records_and_says_what_is_missing(refli
     assert (tmp_path / "page" / "index.html").read_text().count('"state":"missing"') == 2
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("light", ["environment-map", slow("mlp")])
 def test_panes_of_a_page_mirror_where_browsers_can_and_nothing_else_is_asked_for(reflight, glass, tmp_path, light):
     reflight("train", glass / "data", "-o", tmp_path / "model", *quick(glass), "--light", light)

@@ -153,6 +153,7 @@ def test_nothing_happens_when_the_user_thinks_better_of_it(application, controll
     assert controller.window.messages.texts() == told
 
 
+@pytest.mark.long
 def test_a_plan_gets_the_name_that_is_typed(application, controller):
     def name_it(text, button):
         def step(dialog):
@@ -193,6 +194,7 @@ def test_a_plan_an_aircraft_and_a_mesh_are_opened_from_files(application, contro
     assert controller.window.tab("plan").form.aircraft.value() == before
 
 
+@pytest.mark.long
 def test_missions_are_written_after_a_name_and_replaced_after_a_yes_only(application, controller, tmp_path):
     from groundstation.gui.mission.export_dialog import ExportDialog
 
@@ -318,6 +320,7 @@ def test_a_file_that_is_not_there_is_told_and_another_can_be_named(application, 
     assert "wrong.json: there is nothing of that name." in asked[1]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["sora", "terrain", "import"])
 def test_enter_in_a_field_presses_what_the_dialog_is_for_and_escape_leaves(
     application, controller, planned, tmp_path, name

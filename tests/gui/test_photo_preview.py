@@ -124,6 +124,7 @@ def test_a_coarse_picture_comes_first_then_a_fine_one_with_its_effects(hands):
     assert len(hands.names) == n_jobs
 
 
+@pytest.mark.long
 def test_a_newer_viewpoint_takes_the_place_of_an_older_one(hands):
     hands.preview.box.photo.click()
     turn_until(hands.application, lambda: bool(hands.context.jobs()))

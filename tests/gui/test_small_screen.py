@@ -399,6 +399,7 @@ def test_the_import_dialog_can_be_reached(looks, tmp_path):
     assert not looks.found, looks.told()
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("scale", [1.0, 1.6])
 def test_tabs_that_have_no_room_are_reached_by_arrows_that_can_be_seen(application, scale):

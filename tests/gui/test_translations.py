@@ -175,6 +175,7 @@ def test_no_two_german_entries_of_a_menu_share_a_letter(controller):
             assert len(letters) == len(set(letters)), [action.text() for action in menu.actions()]
 
 
+@pytest.mark.long
 def test_keys_have_german_names_wherever_they_are_shown(controller):
     from groundstation.gui.window.menus import sections
 

@@ -117,6 +117,7 @@ def wrong(given: Input, n: int, workspace: Path, folder: Path, forks: Forks) -> 
     return found
 
 
+@pytest.mark.long
 @pytest.mark.few(2)
 @pytest.mark.parametrize("given", [given for given in written() if given.is_quick], ids=lambda given: given.name)
 def test_damaged_files_are_read_or_refused(given, workspace, tmp_path, forks):

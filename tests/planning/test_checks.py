@@ -105,6 +105,7 @@ def test_low_viewpoints_and_paths_are_errors_beside_the_column_above_home() -> N
     assert finding(lonely, "low-flight").place == plan().viewpoints[0].id
 
 
+@pytest.mark.long
 def test_the_lowest_height_is_the_plan_s_or_the_site_s_or_the_usual_and_a_lower_one_is_a_warning() -> None:
     low = moved(0, position_enu_m=(0.0, -12.0, 4.2))
     old = replace(low, constraints=replace(low.constraints, min_height_above_ground_m=None))

@@ -54,6 +54,7 @@ def test_float64_kernel_equals_the_definition(scene, step):
     assert len(found.items) == (expected != NOT_SEEN).sum()
 
 
+@pytest.mark.long
 @pytest.mark.few(2)
 @pytest.mark.parametrize("step", STEPS)
 def test_float32_kernel_differs_only_within_a_thousandth_of_a_degree_of_a_border(step):
@@ -111,6 +112,7 @@ def test_coverage_does_not_depend_on_where_the_local_frame_lies():
     assert abs(here - there) <= 2
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("options", [{"whole_panel": True}, {"max_distance_m": 30.0}, {}])
 def test_elements_covered_and_counts_agree_with_each_other(options):
     frames = frames_of("office")

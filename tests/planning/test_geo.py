@@ -125,6 +125,7 @@ def test_concave_footprint_is_solid_in_its_wings_and_open_in_its_court():
     assert solids.clearance_m(points[2:3])[0] == pytest.approx(10.0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scene", ["library", "court"])
 def test_segments_said_to_be_clear_are_clear_at_every_sampled_point_and_the_others_are_not(scene):
     model = SCENES[scene]()

@@ -125,6 +125,7 @@ def test_more_views_than_are_useful_are_spent_on_depth_or_left_out() -> None:
     assert is_flyable(check_plan(plan, model))
 
 
+@pytest.mark.long
 def test_one_view_of_one_panel_makes_a_flight() -> None:
     plan = plan_flight(SCENES["single-panel"](), PlanRequest(n_views=1, greedy=FEW)).plan
     assert (len(plan.viewpoints), len(plan.sorties), plan.coverage.covered) == (1, 1, 1)

@@ -112,6 +112,7 @@ def assert_keeps_the_contract(model: SiteModel, plan: Plan, spacing_m: float = 0
         assert (np.array(viewpoint.position_enu_m) <= high).all()
 
 
+@pytest.mark.long
 def test_every_method_and_goal_keeps_the_contract_and_every_check(planned: Planned) -> None:
     model, plan = kiosk(), planned.plan
     assert_keeps_the_contract(model, plan)
@@ -121,6 +122,7 @@ def test_every_method_and_goal_keeps_the_contract_and_every_check(planned: Plann
     assert {f.code for f in findings if f.severity is not Severity.OK} <= allowed
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", sorted(set(REQUESTS) - {"whole panels from near"}))
 def test_coverage_in_the_plan_is_that_of_the_contract_s_own_words(name: str) -> None:
     planned = planned_kiosk(name)
@@ -143,6 +145,7 @@ def test_views_that_count_only_whole_and_near_are_fewer_than_the_contract_s() ->
     assert 0 < plan.coverage.covered < len(plain)
 
 
+@pytest.mark.long
 def test_history_rises_within_the_time_taken_and_ends_near_the_plan_s_coverage(planned: Planned) -> None:
     history = planned.plan.history
     assert history
@@ -305,6 +308,7 @@ def test_cancelling_at_any_report_throws_the_plan_away() -> None:
             plan_flight(kiosk(), REQUESTS["views"], monitor=Counting(int(n), cancel))
 
 
+@pytest.mark.long
 @pytest.mark.few(2)
 @pytest.mark.parametrize("name", ["improved views", "batteries", "share", "pso"])
 def test_stopped_at_once_a_plan_comes_out_all_the_same(name: str) -> None:

@@ -100,6 +100,7 @@ def test_a_reached_share_has_nothing_open_and_a_number_of_views_is_not_asked() -
     assert (exact_coverage(planned.prepared.problem.model, views) > 0).sum() == planned.plan.coverage.covered
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("is_cut_short", [False, True])
 def test_what_was_not_decided_asks_for_time_only_where_time_was_short(is_cut_short: bool) -> None:

@@ -208,6 +208,7 @@ def test_report_compares_all_runs_in_the_sections_asked_for_and_in_the_finest(ru
     assert [line.name for line in panels[1].lines] == ["30°", "15°"]
 
 
+@pytest.mark.long
 def test_lowest_proven_bound_counts_and_never_lies_below_what_is_covered(runs):
     tighter = replace(runs[1], bound=runs[0].bound - 1)
     assert bounds_by_step([runs[0], tighter])[30.0] == max(runs[0].bound - 1, runs[0].counts[0].covered)
@@ -222,6 +223,7 @@ def ring(n):
     return np.linalg.norm(shuffled[:, None] - shuffled[None], axis=2), 2.0 * n * math.sin(math.pi / n)
 
 
+@pytest.mark.long
 def test_methods_on_a_ring_of_points_reach_its_known_shortest_tour():
     cost, optimum = ring(40)
     case = TourCase("ring", cost, "m", 0.99 * optimum, optimum)

@@ -215,6 +215,7 @@ def test_particle_swarm_never_gets_worse_and_keeps_every_constraint():
     assert problem.model.covered_count(found.views) == values[-1]
 
 
+@pytest.mark.long
 def test_particle_swarm_attracts_along_the_shorter_way_around_the_compass():
     problem = problem_of("single-panel")
     parameters = PsoParameters(population=30, iterations=60)
@@ -233,6 +234,7 @@ def test_grid_follows_the_facade_at_constant_distance_looking_straight_at_it():
     assert problem.model.covered_count(found.views) < 0.6 * problem.reachability.upper_bound
 
 
+@pytest.mark.long
 def test_orbits_look_inwards_from_all_around():
     problem = problem_of("office")
     found, _ = run(orbit, problem, Goal(n_views=100))

@@ -85,6 +85,7 @@ FORMATS = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", FORMATS)
 def test_each_format_says_what_the_path_enters_and_how_far_it_stays_away(name):
     low = min(point[1] for point in flight().sorties[0].path_enu_m)

@@ -41,6 +41,7 @@ def test_pymavlink_reads_what_is_written(tmp_path):
     assert read_by_pymavlink(log.path) == [(pytest.approx(NOON_S + i, abs=1e-5), 0.25 * i) for i in range(5)]
 
 
+@pytest.mark.long
 def test_every_frame_is_on_its_way_to_the_disk_before_the_program_can_crash(tmp_path):
     program = (
         "import os, sys; from pathlib import Path\n"

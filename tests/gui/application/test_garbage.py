@@ -142,6 +142,7 @@ def test_the_long_search_waits_while_the_window_is_busy(application):
         collector.close()
 
 
+@pytest.mark.long
 def test_modules_that_were_imported_later_are_left_out_of_long_searches(application, monkeypatch):
     import sys
     import types

@@ -87,6 +87,7 @@ def test_an_operators_number_is_proved_kept_without_its_secret_and_refused_where
     page.close()
 
 
+@pytest.mark.long
 def test_a_cameras_definition_file_is_chosen_read_refused_and_taken_off(application, tmp_path):
     from groundstation.gui.fly.flight_settings_page import SettingsPage
     from tests.gui.driving import choose, click_on, clicked

@@ -591,6 +591,7 @@ def test_a_place_is_picked_once_and_escape_picks_none(view, settle, qtbot):
     assert (len(places), len(ended), len(items)) == (1, 2, 1)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("lon", "lat"), [(180.0, -16.5), (-180.0, -16.5), (20.0, 84.9)])
 def test_panning_stays_within_a_frame_at_the_edges_of_the_map(view, settle, tmp_path, lon, lat):
     """Vector tiles, an overlay of many points and a site at the date line and in the far north."""
@@ -630,6 +631,7 @@ def answer_of(path):
     return picture(Tile(zoom, column, row))
 
 
+@pytest.mark.long
 def test_an_online_map_is_asked_only_after_consent_and_shows_its_licence(view, settle, server, monkeypatch, tmp_path):
     from PySide6.QtWidgets import QDialogButtonBox
 
@@ -673,6 +675,7 @@ def _holds(view, tile, x, y):
     return (int(world[0]) % 2**tile.zoom, int(world[1])) == (tile.column, tile.row)
 
 
+@pytest.mark.long
 def test_a_server_that_refuses_is_told_and_not_asked_again_at_once(view, settle, server, monkeypatch, tmp_path):
     monkeypatch.setenv("REFLIGHT_CONFIG_DIR", str(tmp_path))
     server.answer = lambda handler: send(handler, b"", 403)

@@ -193,6 +193,7 @@ def test_findings_are_old_as_soon_as_the_plan_changes_and_then_renewed(page, con
     idle(lambda: page.findings.verdict().startswith("Ready to fly"))
 
 
+@pytest.mark.long
 def test_hidden_tabs_do_not_check(page, context, planned, idle):
     page.hidden()
     context.session.open(opened(planned), None)
@@ -202,6 +203,7 @@ def test_hidden_tabs_do_not_check(page, context, planned, idle):
     idle(lambda: page.findings.verdict().startswith("Ready to fly"))
 
 
+@pytest.mark.long
 def test_cancelling_the_check_leaves_the_page_usable(page, context, planned, idle, application):
     context.session.open(opened(planned), None)
     turn_until(application, context.jobs)
@@ -353,6 +355,7 @@ def test_import_makes_a_plan_that_undo_takes_away(page, context, planned, idle, 
     assert context.document.plans == ()
 
 
+@pytest.mark.long
 def test_a_mission_without_a_site_brings_a_bare_one_of_its_own(page, context, idle, said, shared_data):
     context.session.open(Document(), None)
     page.controller.import_files([shared_data / "missions" / "geoyee_m3d_curtainwall_slope_mapping2d.kmz"])
@@ -370,6 +373,7 @@ def test_a_mission_without_a_site_brings_a_bare_one_of_its_own(page, context, id
     assert context.document.site is None
 
 
+@pytest.mark.long
 def test_files_that_are_no_missions_are_refused_by_name(page, context, planned, idle, said, tmp_path):
     bad = tmp_path / "holiday.kmz"
     bad.write_bytes(b"PK not a zip")

@@ -331,6 +331,7 @@ def test_the_picture_is_saved_with_its_marks(opened, tmp_path):
     assert "cannot be written" in opened.messages[-1].text
 
 
+@pytest.mark.long
 def test_records_go_into_tables_and_what_a_spreadsheet_filled_in_comes_back(application, opened, tmp_path):
     write, read = opened.records.tables.menu().actions()
     with clicked("Cancel"):
@@ -578,6 +579,7 @@ def test_records_are_added_and_changed_in_a_form_and_not_when_it_is_left(opened)
     assert [found.kind for found in opened.controller.entries_of(Defect, global_id)] == ["chip"]
 
 
+@pytest.mark.long
 def test_a_picture_goes_with_a_defect_and_a_file_with_a_document(opened, tmp_path):
     global_id = opened.controller.card.panels[0].global_id
     opened.controller.select(global_id)
@@ -605,6 +607,7 @@ def test_a_picture_goes_with_a_defect_and_a_file_with_a_document(opened, tmp_pat
     assert len(opened.controller.entries_of(Document, global_id)[0].sha256) == 64
 
 
+@pytest.mark.long
 def test_a_record_that_cannot_be_kept_is_not_typed_again(opened, tmp_path):
     global_id = opened.controller.card.panels[0].global_id
     opened.controller.select(global_id)

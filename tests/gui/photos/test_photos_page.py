@@ -219,6 +219,7 @@ def test_a_coarse_model_is_asked_for_by_its_button_and_what_is_wrong_is_said(pag
     assert page.tab.coarse.isEnabled()
 
 
+@pytest.mark.long
 def test_a_coarse_model_that_was_begun_goes_on_in_its_folder(page, controller, folder, tmp_path):
     few, begun = tmp_path / "few", tmp_path / "tower" / ".coarse"
     few.mkdir()

@@ -192,6 +192,7 @@ def test_wrong_coordinate_system_is_told_by_the_fields_name(opened, shared_data)
     assert "there are no windows" in hands.dialog._notes.toPlainText()
 
 
+@pytest.mark.long
 @pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("name", "content", "message"),

@@ -94,6 +94,7 @@ def opened(application):
         window.close()
 
 
+@pytest.mark.long
 def test_without_a_site_the_tab_says_what_to_do_and_a_bundled_site_fills_it(opened):
     hands = opened(None)
     side = hands.tab.left
@@ -110,6 +111,7 @@ def test_without_a_site_the_tab_says_what_to_do_and_a_bundled_site_fills_it(open
     assert side.start.isVisible()
 
 
+@pytest.mark.long
 def test_selection_follows_between_tree_view_and_properties(opened):
     from groundstation.gui.site.pages import ObstaclePage, PanelPage
 
@@ -261,6 +263,7 @@ def test_escape_and_a_second_press_put_a_tool_away_and_leave_the_site(opened):
     assert hands.context.document is before
 
 
+@pytest.mark.long
 def test_values_that_cannot_be_are_told_at_the_box_and_not_taken(opened):
     hands = opened("office")
     hands.context.select(Item(ItemKind.AIRSPACE))

@@ -32,6 +32,7 @@ def wait(duration_s):
         time.sleep(0.005)
 
 
+@pytest.mark.long
 def test_a_press_that_lasts_acts_once_and_a_slip_does_not(button):
     for _ in range(3):
         QTest.mouseClick(button, LEFT)
@@ -98,6 +99,7 @@ def test_its_bar_shows_how_long_it_is_held(application, button):
     assert bar_px() == 0
 
 
+@pytest.mark.long
 def test_a_key_is_held_as_a_finger_is_though_it_repeats_itself(button):
     button.setFocus()
     press, release = QKeyEvent.Type.KeyPress, QKeyEvent.Type.KeyRelease
@@ -115,6 +117,7 @@ def test_a_key_is_held_as_a_finger_is_though_it_repeats_itself(button):
     assert button.acted == [True]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("away", ["slides off", "focus goes", "is disabled", "is hidden"])
 def test_it_is_let_go_by_whatever_ends_the_hold(button, away):
     button.setFocus()
@@ -141,6 +144,7 @@ def test_shortcuts_and_screen_readers_act_at_once(button):
     assert button.acted == [True]
 
 
+@pytest.mark.long
 def test_while_the_window_stands_still_nothing_is_held(button):
     """The finger was lifted meanwhile, and that is heard after the timer."""
     QTest.mousePress(button, LEFT)

@@ -37,6 +37,7 @@ def test_every_icon_is_drawn_in_the_colour_it_is_asked_for(application):
         assert all(abs(colour.hue() - QColor("#cc2200").hue()) <= 2 for colour in inked), name
 
 
+@pytest.mark.long
 def test_a_button_has_its_icon_in_the_colours_of_the_theme(application):
     from PySide6.QtWidgets import QPushButton
 

@@ -45,6 +45,7 @@ def test_a_click_on_a_term_says_what_it_means_and_leads_to_the_manual(applicatio
     window._manual.close()
 
 
+@pytest.mark.long
 def test_the_manual_follows_links_goes_back_searches_and_shows_pictures(application, window):
     press_in(window, "Manual")
     manual = window._manual
@@ -73,6 +74,7 @@ def test_the_manual_follows_links_goes_back_searches_and_shows_pictures(applicat
     manual.close()
 
 
+@pytest.mark.long
 def test_the_tour_is_offered_once_goes_through_the_window_and_can_be_left(application, window):
     from groundstation.gui.window.help import Tour
 

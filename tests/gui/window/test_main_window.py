@@ -484,6 +484,7 @@ def test_modules_that_are_half_imported_are_asked_for_nothing(tmp_path, is_left_
     assert (made.returncode == 0) is is_left_alone, made.stderr
 
 
+@pytest.mark.long
 def test_no_type_of_qt_is_left_to_be_made_when_there_are_other_threads(application, tmp_path):
     """Two threads that have types made at once end the process, which most tries of them alone show."""
     script = """

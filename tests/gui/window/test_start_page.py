@@ -27,6 +27,7 @@ def ticked(window):
     return {name for name, tip in tips.items() if tip.startswith("Done. ")}
 
 
+@pytest.mark.long
 def test_the_sample_opens_with_its_steps_ticked(application, controller):
     window = controller.window
     assert ticked(window) == set()
@@ -60,6 +61,7 @@ def test_each_step_of_the_sample_leads_to_the_next(application, controller):
     assert window.next_step.button.text() == "Open the model"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("way", "tab", "dialog"),
     [

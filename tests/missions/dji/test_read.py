@@ -285,6 +285,7 @@ def changed(folder: Path, real: Path, pattern: str, instead: str) -> Path:
     return path
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["djisdk_psdk_m3e_waypoint_v3_test.kmz", "geoyee_m3t_waypoint.kmz"])
 @pytest.mark.parametrize("change", REFUSED)
 def test_what_an_aircraft_would_refuse_is_read_and_told(

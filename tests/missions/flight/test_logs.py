@@ -228,6 +228,7 @@ REAL = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", REAL)
 def test_real_logs_give_their_flights(shared_data: Path, name: str) -> None:
     path = shared_data / "logs" / name

@@ -61,6 +61,7 @@ def there_and_back(plan: Plan, file_format: FileFormat, options: ExportOptions) 
         return [mission for path in paths for mission in read_missions(path)]
 
 
+@pytest.mark.long
 @pytest.mark.few(2)
 @pytest.mark.parametrize(("file_format", "options"), WAYS, ids=IDS)
 @given(plan=plans())

@@ -69,6 +69,7 @@ def decoded(data: bytes, is_whole: bool = False) -> list[Message | None]:
     return [each.received and each.received.message for each in Decoder().feed(data, 0.0, is_whole)]
 
 
+@pytest.mark.long
 @pytest.mark.few(11)
 @given(data=st.data())
 @pytest.mark.parametrize("record", RECORDS, ids=lambda record: record.__name__)

@@ -95,6 +95,7 @@ def test_views_skipped_in_the_middle_are_flown_and_those_done_are_not(data: st.D
     assert_keeps_the_contract(site(), rest.plan, spacing_m=1.0)
 
 
+@pytest.mark.long
 @pytest.mark.few(2)
 @pytest.mark.parametrize("autopilot", list(Autopilot))
 @pytest.mark.parametrize("n_taken", [0, 1, 4, 8])

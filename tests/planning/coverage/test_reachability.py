@@ -72,6 +72,7 @@ def test_nothing_proven_unreachable_is_ever_seen_from_an_allowed_place(scene, oc
     assert found.n_reachable <= found.upper_bound <= model.n_elements
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize(("scene", "occlusion"), [("office", False), ("canyon", True), slow("court", True)])
 def test_every_witness_covers_its_section_by_the_definition(scene, occlusion):

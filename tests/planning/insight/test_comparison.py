@@ -41,6 +41,7 @@ def test_a_plan_beside_itself_is_equal_in_every_row_and_better_in_none():
     assert same.notes == ()
 
 
+@pytest.mark.long
 def test_rows_hold_what_is_measured_one_by_one():
     found = compared(planned(), first_views(4))
     counts = [exact_coverage(site().problem.model, viewpoint_arrays(p.viewpoints)) for p in (planned(), first_views(4))]

@@ -342,6 +342,7 @@ def test_over_terrain_the_buffer_is_no_wider_than_for_the_lowest_ground_and_no_n
     assert risk.buffer.area < 0.99 * outer.area
 
 
+@pytest.mark.long
 @SLOPES
 @settings(deadline=None)
 @given(st.integers(0, 2**32 - 1))

@@ -88,6 +88,7 @@ FAR = Constraints(10.0)
 CLOSE = Constraints(5.0, occlusion="on", max_distance_m=14.0)
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize(("name", "constraints"), [("kiosk", NEAR), ("kiosk", CLOSE), ("single-panel", FAR)])
 def test_every_reason_is_true_at_its_place(name, constraints):

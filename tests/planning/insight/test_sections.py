@@ -99,6 +99,7 @@ def test_fine_sections_and_the_precision_of_the_fast_kernel_change_nothing():
     assert found[0].counts.sum() == coarse.counts.sum()
 
 
+@pytest.mark.long
 def test_a_panel_that_nobody_sees_has_no_share():
     model = SCENES["single-panel"]()
     south, airspace = model.site.facades[0], model.site.airspace

@@ -18,6 +18,7 @@ from tests.planning.proof.tampering import TAMPERINGS, of_kinds, sealed, tampere
 from tests.planning.proof.verifiers import Claim, QtScript, by_module, by_program, load
 
 
+@pytest.mark.long
 def test_nothing_of_a_few_tampered_huts_is_wrongly_proved(tmp_path: Path) -> None:
     hut, seen_from = kept_hut()
     module, verdicts = load(), Counter[str]()

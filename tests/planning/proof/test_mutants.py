@@ -42,6 +42,7 @@ def test_a_program_without_a_change_is_not_told(asked: list[Question]) -> None:
     assert told_by(changed._replace(new=getattr(node, name)[k]), asked) is None
 
 
+@pytest.mark.long
 def test_other_words_of_a_refusal_are_told(asked: list[Question]) -> None:
     other = mutants(SOURCE.replace("has a key twice", "is odd"))[0]
     node, name, k = other.place
@@ -49,6 +50,7 @@ def test_other_words_of_a_refusal_are_told(asked: list[Question]) -> None:
     assert told_by(other._replace(new=kept), asked) is not None
 
 
+@pytest.mark.long
 def test_each_mutant_that_is_called_equivalent_exists() -> None:
     lines, found = SOURCE.splitlines(), mutants(SOURCE)
     for part, change, _ in EQUIVALENT:

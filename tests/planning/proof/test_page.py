@@ -63,6 +63,7 @@ def test_the_page_says_the_same_of_numbers_at_their_limits_and_of_odd_parts(tmp_
         assert same(by_module(module, files, folder), page_claims), kind
 
 
+@pytest.mark.long
 @pytest.mark.skipif(NODE is None, reason="Node is not installed")
 def test_node_says_what_qt_says(page: QtScript, tmp_path: Path) -> None:
     files, _ = kept_hut()

@@ -97,6 +97,7 @@ def test_a_distance_from_a_triangle_is_never_too_small(seed: int) -> None:
         assert away <= least + 1e-4
 
 
+@pytest.mark.long
 @given(seeds)
 def test_a_box_is_excluded_only_where_no_place_in_it_sees_the_section(hut: Opened, seed: int) -> None:
     random, case, judged = Random(seed), hut.case, hut.judged

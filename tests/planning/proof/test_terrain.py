@@ -168,6 +168,7 @@ def _hut_on(
     return sealed(changed)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("files", "expected"),
     [

@@ -115,6 +115,7 @@ def test_only_what_changed_is_measured_again(monkeypatch: pytest.MonkeyPatch) ->
     assert not any(asked.values())
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("name", sorted(SETTINGS))
 def test_what_a_view_sees_does_not_depend_on_the_views_asked_for_with_it(name: str) -> None:

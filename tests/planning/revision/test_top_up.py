@@ -204,6 +204,7 @@ def test_a_battery_limits_the_flight_and_what_it_leaves_open_is_said() -> None:
     assert found.shortest_s is None
 
 
+@pytest.mark.long
 def test_a_battery_that_suffices_changes_nothing_but_says_that_it_is_used() -> None:
     plan = flown_plan()
     found = topped_up(plan, photos(plan, range(8)), replace(SOON, battery=0.9))
@@ -376,6 +377,7 @@ def test_a_rest_is_negligible_up_to_a_two_hundredth_of_the_sections_and_its_cost
     assert not topped_up(plan, photos(plan)).is_negligible
 
 
+@pytest.mark.long
 def test_a_negligible_rest_that_cannot_be_shown_or_flown_for_is_no_error() -> None:
     plan, view = alone(1)
     flat = topped_up(plan, photos(plan, [view]), replace(SOON, battery=0.2))

@@ -74,6 +74,7 @@ def test_aircraft_keep_apart_whoever_is_early_or_late():
             assert not (gaps < plan.rules.apart_m).any()
 
 
+@pytest.mark.long
 def test_two_aircraft_land_earlier_than_one_and_the_check_says_how_near_they_come(tmp_path):
     site_model, plan = flown()
     findings = check_plan(plan, site_model)
@@ -170,6 +171,7 @@ LATES_S, RATES = np.repeat(LATE_S, len(RATES))[:, None], np.tile(RATES, (len(LAT
 """One early while the other is late, from one extreme to the other, each fast or slow."""
 
 
+@pytest.mark.long
 @given(flights(), flights(), st.floats(4.0, 25.0), st.integers(0, 2**32 - 1))
 @settings(deadline=None)
 def test_starts_judged_apart_are_so_by_brute_force_and_those_forbidden_are_for_a_reason(one, other, apart_m, seed):

@@ -124,6 +124,7 @@ def test_views_at_one_place_each_have_a_vertex_and_cost_no_way() -> None:
     assert flight.duration_s == pytest.approx(alone.duration_s + 2 * stop_s + 2 * 1.0, abs=0.6)
 
 
+@pytest.mark.long
 def test_sorties_fit_into_the_battery_and_there_are_no_more_than_needed() -> None:
     views = some_views(14, seed=2)
     together = sum(flight.duration_s for flight in fly(views))

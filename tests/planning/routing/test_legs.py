@@ -108,6 +108,7 @@ def test_legs_not_looked_at_in_time_become_ways_over_shorter_ones(scene: str, mo
         assert float(distances(dense_points(cut.polyline(start, end), 0.3), triangles).min()) >= DISTANCE_M
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scene", ["block", "court"])
 @pytest.mark.parametrize("n_asked", [0, 1, 3])
 def test_in_a_hurry_ways_are_found_all_the_same_and_are_no_longer_than_was_said(

@@ -221,6 +221,7 @@ class LookedAt(Prizes):
         return super().marginals()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("n_asked", [300, 500, 1000])
 def test_a_round_is_broken_off_and_leaves_what_was_best_before(n_asked: int) -> None:
     """Every stop that is put in is one question whether to end: some 90 at first, and as many in long rounds."""

@@ -187,6 +187,7 @@ def test_a_return_stays_in_the_airspace_and_is_as_high_as_wanted_where_there_is_
         assert ceiling_m - found.z_m < 0.1 + 1e-9
 
 
+@pytest.mark.long
 def test_where_the_airspace_ends_too_low_to_return_over_the_building_the_plan_is_not_ready():
     """45.0 m against 44.8 m was ready, and then a danger."""
     plan = plan_flight(walled_off(40.0), PlanRequest(n_views=4, method="orbit")).plan

@@ -154,6 +154,7 @@ def test_trace_counts_sections_whatever_they_weigh() -> None:
         assert weights[problem().model.covered(views)].sum() <= bound + 1e-9
 
 
+@pytest.mark.long
 def test_a_battery_that_reaches_no_view_is_refused_with_its_time() -> None:
     with pytest.raises(InfeasibleError, match="reached and left again within 6 s of one battery"):
         choose(6.0, 3)
@@ -203,6 +204,7 @@ def test_fewer_candidates_are_compared_where_the_time_does_not_last(
         assert np.isfinite(reused.travel_s).all()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("n_batteries", "n_compared"), [(1, 20), (2, 20), (3, 30), (10, 60)])
 def test_more_candidates_are_compared_for_more_batteries(
     n_batteries: int, n_compared: int, monkeypatch: pytest.MonkeyPatch

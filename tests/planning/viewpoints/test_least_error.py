@@ -354,6 +354,7 @@ def test_panes_mirror_as_two_sheets_of_glass_do():
     assert found[0] > 0.9
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("site", "is_on"), [("single-panel", True), ("roof", False)])
 def test_places_of_what_is_mirrored_count_where_panes_mirror_something_near(site, is_on):
     found, decision = image_error_model(prepared(site).problem, prepared(site).site_model)

@@ -159,6 +159,7 @@ def test_no_view_is_chosen_too_close_to_a_locked_one() -> None:
     assert away_m[away_m > 0.0].min() >= 0.5
 
 
+@pytest.mark.long
 def test_flights_with_locked_views_are_never_left_out() -> None:
     views = viewpoint_arrays((*LOCKED, *planned("kiosk").plan.viewpoints))
     model = prepared("kiosk").problem.model

@@ -70,7 +70,7 @@ def test_estimated_share_agrees_with_a_larger_sample_in_float64():
     scene = occlusion_scene("court")
     space = free_space(SCENES["court"](), 10.0)
     size = decide(Occlusion(), scene).size
-    places = spread_positions(space, scene.frames, 1500, np.random.default_rng(99))
+    places = spread_positions(space, scene.frames, 8000, np.random.default_rng(99))
     targets = scene.frames.centroids + 0.15 * scene.frames.normals
     rays = places[:, None] - scene.frames.centroids[None]
     place, panel = np.nonzero(np.einsum("nmk,mk->nm", rays, scene.frames.normals) > 0)

@@ -70,6 +70,7 @@ def covered(views: ViewpointArrays) -> int:
     return problem().model.covered_count(views)
 
 
+@pytest.mark.long
 @given(seed=st.integers(0, 10_000), n_places=st.integers(1, 6), n_views=st.integers(1, 25))
 @settings(max_examples=60)
 def test_places_that_stay_close_are_worth_more_than_the_loss_allowed(seed: int, n_places: int, n_views: int) -> None:

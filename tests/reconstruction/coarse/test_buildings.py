@@ -49,6 +49,7 @@ def test_walls_lie_within_centimetres_and_blocks_close(plain):
     assert all(face.seen_share > 0.5 for face in plain.faces if face.area_m2 > 20.0)
 
 
+@pytest.mark.long
 def test_each_wing_has_its_own_height(plain):
     (x, y), (u, v), top = TALL
     assert height_at(plain, (x + u) / 2, (y + v) / 2) == pytest.approx(top, abs=0.15)
@@ -92,6 +93,7 @@ def test_what_was_closed_is_told(plain, glazed):
     assert seen_m2(glazed) < seen_m2(plain) - 40.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("angle_deg", [0.05, 0.3, 31.0])
 def test_two_walls_are_sides_of_the_block_whatever_way_it_stands(angle_deg):
     cloud = made_cloud()
@@ -108,6 +110,7 @@ def test_two_walls_are_sides_of_the_block_whatever_way_it_stands(angle_deg):
     assert float(hits.distance_m[0]) == pytest.approx(44.0, abs=0.05)
 
 
+@pytest.mark.long
 def test_ground_is_the_lowest_wide_level(plain):
     cloud = made_cloud()
     strays = np.column_stack([np.random.default_rng(0).uniform(-20.0, 20.0, (10, 2)), np.full(10, -3.0)])
@@ -143,6 +146,7 @@ def test_the_building_is_what_a_ring_of_cameras_looks_at():
     assert in_ring(points, centres, inwards(centres)[:, [1, 0, 2]] * [1.0, -1.0, 1.0]).all()
 
 
+@pytest.mark.long
 def test_houses_opposite_are_obstacles_that_leave_the_site_free(plain):
     rng, cloud = np.random.default_rng(0), made_cloud()
     n = 3000
@@ -171,6 +175,7 @@ def test_houses_opposite_are_obstacles_that_leave_the_site_free(plain):
     assert not is_near.any()
 
 
+@pytest.mark.long
 def test_a_building_moves_as_a_whole(plain):
     shift = np.array([3.0, -2.0, 1.5])
     other = moved(plain, shift)
@@ -197,6 +202,7 @@ def test_a_prism_with_a_court_is_closed():
     assert float(hits.distance_m[1]) == pytest.approx(50.0 - 5.9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("pitch_deg", "walls", "codes"),
     [

@@ -91,6 +91,7 @@ def test_ground_that_is_steep_or_shows_nothing_is_left_to_the_points():
     assert level_of_ground(photos, lambda photo: noise[photo.name], wall_points(), FOOT_Z) is None
 
 
+@pytest.mark.long
 def test_cameras_below_the_lowest_points_tell_no_ground():
     photos = walked()
     pictures = taken(photos)

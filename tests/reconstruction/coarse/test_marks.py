@@ -40,6 +40,7 @@ def test_a_mark_on_another_target_is_found_out(photos):
     assert agreeing_marks(marked(photos, POINTS[1], (-1500.0, 1500.0, 0.0, 0.0))[:2]) == []
 
 
+@pytest.mark.long
 def test_pixels_of_reduced_photos_are_told_by_their_factor(photos):
     whole = [marked(photos, point) for point in POINTS]
     assert factor_of_marks(whole) is None
@@ -47,6 +48,7 @@ def test_pixels_of_reduced_photos_are_told_by_their_factor(photos):
     assert factor_of_marks(reduced) == pytest.approx(1.92, rel=0.01)
 
 
+@pytest.mark.long
 def test_marks_that_fit_with_no_factor_have_none(photos):
     rng = np.random.default_rng(3)
     wrong = [[(photo, *rng.uniform((0.0, 0.0), (4000.0, 3000.0))) for photo in photos] for _ in POINTS]

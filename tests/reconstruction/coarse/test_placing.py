@@ -85,6 +85,7 @@ def looking_down(n=20, side_m=40.0):
     return places, np.repeat(cam_from_enu(30.0, -90.0)[None], x.size, axis=0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("by_control", [False, True])
 def test_photos_that_look_straight_down_are_placed_by_what_is_known_of_places(by_control):
     places, turns = looking_down()
@@ -257,6 +258,7 @@ def test_receivers_that_put_the_ground_below_the_sea_are_told(ground_amsl_m, cod
     assert all("56 m below sea level" in str(finding.message) for finding in findings)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("sigma_m", "is_wrong"), [(0.02, True), (1.0, False)])
 def test_positions_that_are_stated_better_than_the_model_meets_them_contradict_it(sigma_m, is_wrong):
     """Strips flown to and fro, off by 0.5 m to one side and the other, as a lens with a wrong centre puts them."""

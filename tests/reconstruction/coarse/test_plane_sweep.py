@@ -62,6 +62,7 @@ def look(texture, guess_y, wall=None, slope=0.0):
     return swept(flown(), lambda photo: seen_by(photo, texture, slope), buildings, cloud, STEP_M)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("guess_y", [-6.0, -4.6, -8.1])
 def test_a_guessed_side_is_found_where_photos_agree(guess_y):
     found = look(plaster(), guess_y)
@@ -73,12 +74,14 @@ def test_a_guessed_side_is_found_where_photos_agree(guess_y):
     assert found.n_views.min() >= 2
 
 
+@pytest.mark.long
 def test_a_side_that_is_a_little_askew_stays_so():
     found = look(plaster(), -5.5, slope=0.012)
     line = np.polyfit(found.points[:, 0], found.points[:, 1], 1)
     assert line[0] == pytest.approx(0.012, abs=0.003)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("noise", [0.0, 4.0])
 def test_plain_walls_say_nothing(noise):
     buildings, cloud = site_with(-5.0)
@@ -92,6 +95,7 @@ def test_plain_walls_say_nothing(noise):
     assert len(swept(flown(), noisy, buildings, cloud, STEP_M)) == 0
 
 
+@pytest.mark.long
 def test_bare_concrete_is_enough():
     faint = (118.0 + plaster() / 255.0 * 20.0).astype(np.uint8)
     found = look(faint, -5.0)
@@ -99,6 +103,7 @@ def test_bare_concrete_is_enough():
     assert np.abs(found.points[:, 1] - WALL_Y).max() < 0.08
 
 
+@pytest.mark.long
 def test_photos_that_show_other_things_say_nothing():
     buildings, cloud = site_with(-5.0)
     textures = {photo.name: plaster(number) for number, photo in enumerate(flown())}
@@ -106,6 +111,7 @@ def test_photos_that_show_other_things_say_nothing():
     assert len(found) == 0
 
 
+@pytest.mark.long
 def test_a_side_with_points_is_not_led_away_from_them():
     assert len(look(plaster(), WALL_Y + 1.5, wall=0)) == 0
     assert len(look(plaster(), WALL_Y + 0.1, wall=0)) > 60
@@ -117,6 +123,7 @@ def test_photos_in_another_order_are_refused():
         swept(flown()[::-1], lambda photo: seen_by(photo, plaster()), buildings, cloud, STEP_M)
 
 
+@pytest.mark.long
 def test_points_are_added_to_those_of_the_cloud():
     found = look(plaster(), -5.0)
     both = joined(found, found)

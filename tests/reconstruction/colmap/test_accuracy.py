@@ -50,6 +50,7 @@ def whole_jacobian(posed, found):
     return np.stack(columns, axis=1)
 
 
+@pytest.mark.long
 def test_eliminating_the_points_gives_what_the_whole_normal_matrix_gives():
     posed = photos(6, rows=2)
     found = model(posed, 40)

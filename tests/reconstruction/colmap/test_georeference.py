@@ -119,6 +119,7 @@ def test_photos_become_a_model_and_come_back(tmp_path):
     assert again[0].path == FOLDER / "000.jpg"
 
 
+@pytest.mark.long
 def test_the_real_model_meets_its_own_cameras(shared_data):
     folder = shared_data / "multiview" / "lund_door"
     real = read_model(folder / "colmap_ground_truth")

@@ -58,6 +58,7 @@ def test_no_other_similarity_fits_noisy_points_better():
         assert cost(best) <= cost(other)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("share", [0.0, 0.2, 0.45])
 def test_outliers_are_found_and_do_no_harm(share):
     truth, rng = known(5)

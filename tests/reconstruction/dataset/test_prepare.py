@@ -190,6 +190,7 @@ def test_a_straightened_picture_shows_every_direction_where_the_straight_camera_
     assert valid[:, 104:].all()
 
 
+@pytest.mark.long
 def test_black_corners_of_a_straightened_picture_count_for_nothing(tmp_path: Path) -> None:
     cushion = replace(LENS, distortion=(0.12, 0.0, 0.0, 0.0, 0.0))
     prepared = prepare(photos_in(tmp_path / "in", cushion, 1), site_model(), tmp_path / "out", QUICK)
@@ -242,6 +243,7 @@ def test_broken_photos_are_reported_and_left_out(tmp_path: Path) -> None:
     assert not (tmp_path / "again").exists()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("orientation", [3, 6, 8])
 def test_photos_marked_to_be_shown_turned_are_straightened_as_they_are_stored(tmp_path: Path, orientation: int) -> None:
     photos = photos_in(tmp_path / "in", BENT, 1)
@@ -254,6 +256,7 @@ def test_photos_marked_to_be_shown_turned_are_straightened_as_they_are_stored(tm
     np.testing.assert_array_equal(one, other)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("lens", [LENS, BENT])
 def test_a_camera_of_the_turned_picture_gets_the_turned_picture(tmp_path: Path, lens: Intrinsics) -> None:
     upright = replace(lens, width_px=150, height_px=200, cx_px=75.0, cy_px=100.0)

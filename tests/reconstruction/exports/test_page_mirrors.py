@@ -123,6 +123,7 @@ def shaders():
     return Shaders()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("rays", "make"), [(1, grid_of), (4, grid_of), (4, environment_of)])
 def test_panes_mirror_to_pixels_what_the_model_mirrors(shaders, rays, make):
     rng = np.random.default_rng(rays)
@@ -166,6 +167,7 @@ def glazed(model, rng):
     return model.with_splats(Splats(tensors, torch.from_numpy(panels).int()))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("make", "rays"), [(grid_of, 1), (network_of, 4)])
 def test_pages_show_what_the_model_shows_through_all_passes(shaders, make, rays):
     rng = np.random.default_rng(3)

@@ -178,6 +178,7 @@ def test_tiles_that_are_shared_out_show_fewer_gaussians_of_all_their_panels(tmp_
     assert read(tmp_path)["geometricError"] >= root["geometricError"]
 
 
+@pytest.mark.long
 def test_without_coarser_ones_each_gaussian_is_in_the_folder_once(tmp_path):
     scene = synthetic_scene(((2000, 1500),), 3000)
     write_tiles(scene, tmp_path, TilesOptions(gaussians_per_tile=1000, has_coarser=False))

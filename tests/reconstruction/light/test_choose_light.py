@@ -55,6 +55,7 @@ def test_near_things_call_for_a_radiance_grid_and_far_ones_for_an_environment_ma
     assert is_near.cost_s > 0.0
 
 
+@pytest.mark.long
 def test_the_choice_can_be_cancelled_and_one_photo_is_not_enough_for_one(found):
     _, rays, planes, _ = found
 
@@ -100,6 +101,7 @@ def test_the_cheaper_model_is_taken_where_the_other_is_no_better(scores_db, name
     assert all(decision.decided_by == "scene" for decision in decisions)
 
 
+@pytest.mark.long
 def test_the_box_holds_where_mirrored_rays_go_and_no_more_cells_than_are_allowed(found):
     _, rays, _, _ = found
     middle, table = rays.middle(), rays.table
@@ -129,6 +131,7 @@ def test_gains_count_as_far_as_they_are_beyond_what_photos_differ_in():
     assert trials_of(alike[:1], 1.0).unsure_db == (0.0, 0.0)
 
 
+@pytest.mark.long
 def test_looking_at_more_and_more_photos_misleads_no_more_often_than_is_said():
     rng, n_wrong, n_clear, n_drawn = np.random.default_rng(0), 0, 0, 2000
     for _ in range(n_drawn):
@@ -143,6 +146,7 @@ def test_looking_at_more_and_more_photos_misleads_no_more_often_than_is_said():
     assert surely_more(np.array([9.0]), 0.3, FOLDS) is None
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("spread_db", "n_folds"), [(0.05, 1), (6.0, FOLDS)])
 def test_photos_are_held_back_again_only_while_those_before_do_not_tell(found, monkeypatch, spread_db, n_folds):
     _, rays, planes, _ = found
@@ -180,6 +184,7 @@ def test_a_grid_that_may_be_better_is_tried_with_splats_beside_the_environment_m
     assert "20.3 dB with a radiance grid, 19.5 dB with an environment map" in near.reason
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 def test_of_few_photos_others_are_held_back_again_and_again(found):
     _, rays, planes, _ = found

@@ -51,6 +51,7 @@ def test_a_mirror_shows_each_texel_where_it_is():
     assert torch.allclose(made(middle, torch.zeros(len(middle))), truth, atol=1e-5)
 
 
+@pytest.mark.long
 @pytest.mark.few(2)
 @pytest.mark.parametrize(("roughness", "share"), [(0.15, 0.05), (0.22, 0.07), (0.4, 0.05), (0.6, 0.04), (0.9, 0.02)])
 def test_rough_light_is_what_a_ggx_lobe_sees(roughness, share):
@@ -93,6 +94,7 @@ def test_float32_and_float64_agree_in_values_and_gradients():
         assert float(is_close.double().mean()) > 0.998
 
 
+@pytest.mark.long
 def test_gradients_are_those_of_finite_differences():
     made = filled(8).double()
     asked = directions(3, seed=4).requires_grad_()
@@ -144,6 +146,7 @@ def test_only_texels_are_saved():
     assert list(CubeMap(8).state_dict()) == ["texels"]
 
 
+@pytest.mark.long
 def test_a_mirror_ball_teaches_the_light_that_no_ray_has_shown():
     made = CubeMap(SIDE)
     known, unseen = (seen(n, seed, f0=1.0, diffuse=0.0) for n, seed in ((N_TRAINED, 0), (N_UNSEEN, 1)))

@@ -24,6 +24,7 @@ def summed(light, towards, weight, finer=4):
     return weights @ light[texels_of(places, SIDE)] / weights.sum(axis=1)
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize(("roughness", "square", "share"), [(0.3, 0.7, 0.012), (0.5, 0.5, 0.008), (1.0, 0.35, 0.012)])
 def test_ggx_filters_are_sums_over_the_sphere(roughness, square, share):

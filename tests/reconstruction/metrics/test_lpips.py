@@ -252,6 +252,7 @@ def package(path, weights, content=None):
     return path
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("backbone", ["alex", "vgg"])
 def test_weights_of_the_package_are_those_that_were_pickled(tmp_path, backbone):

@@ -67,6 +67,7 @@ def test_records_come_back_as_they_were(tmp_path_factory, found, semicolon):
         assert len(history(again)) == n_changes
 
 
+@pytest.mark.long
 @given(st.lists(entries, min_size=1, max_size=6))
 def test_no_cell_can_be_taken_for_a_formula(tmp_path_factory, found):
     folder = tmp_path_factory.mktemp("a")

@@ -141,6 +141,7 @@ def filled(book):
         book.put(attribute)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("schema", SCHEMAS)
 def test_copies_get_our_sets_and_stay_as_they_are(book, tmp_path, schema):
     made = Made(schema)

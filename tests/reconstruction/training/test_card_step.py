@@ -219,6 +219,7 @@ def by_card(
     return found
 
 
+@pytest.mark.long
 @pytest.mark.few(2)
 @pytest.mark.parametrize(
     ("solid", "glass", "progress", "settings"),

@@ -179,6 +179,7 @@ def test_interrupted_training_goes_on_bit_by_bit(make, tmp_path, light):
     assert_same(whole, second)
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("setting", ["on", "auto", "off"])
 def test_poses_are_corrected_where_they_are_to_be_and_go_on_bit_by_bit(make, tmp_path, setting):
@@ -459,6 +460,7 @@ def test_settling_takes_a_minute_at_most(make, monkeypatch):
     assert trainer.at.step == 2 + 60
 
 
+@pytest.mark.long
 def test_a_training_that_waits_goes_on_as_if_it_had_not(make):
     whole, part = make(), make()
     whole.run(Callbacks())

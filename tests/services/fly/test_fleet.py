@@ -65,6 +65,7 @@ def test_traffic_tells_the_others_and_how_long_ago_they_were_heard():
     assert traffic.others(1) == ()
 
 
+@pytest.mark.long
 def test_what_was_heard_long_ago_counts_for_no_distance():
     clock = Hands()
     traffic = Traffic(clock)

@@ -279,6 +279,7 @@ class RefusingLink:
         self._link.close()
 
 
+@pytest.mark.long
 def test_a_mission_that_the_vehicle_refuses_is_never_called_on_board(flight):
     model, plan = planned()
     live, follower = flight(Refusing(plan, model, speed_up=SPEED_UP))

@@ -84,6 +84,7 @@ def test_a_vehicle_is_given_the_key_and_signs_with_it_and_is_told_to_stop():
                 link.receive(0.1)
 
 
+@pytest.mark.long
 def test_a_vehicle_that_does_not_know_signing_is_told_apart(monkeypatch):
     monkeypatch.setattr(signing, "HEARD_S", 1.0)
     signing.set_passphrase(PASSPHRASE)
@@ -91,6 +92,7 @@ def test_a_vehicle_that_does_not_know_signing_is_told_apart(monkeypatch):
         signing.give_key(vehicle.url)
 
 
+@pytest.mark.long
 def test_a_vehicle_with_another_key_is_not_heard(monkeypatch):
     monkeypatch.setattr(signing, "HEARD_S", 1.0)
     signing.set_passphrase(PASSPHRASE)

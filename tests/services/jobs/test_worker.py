@@ -104,6 +104,7 @@ def test_the_result_progress_quality_and_bound_come_back(worker):
     assert trace.bound == 63
 
 
+@pytest.mark.long
 def test_every_call_reports_however_soon_it_follows_the_one_before(worker):
     for _ in range(20):
         reports = Reports()

@@ -107,6 +107,7 @@ def test_a_plan_far_below_what_can_be_covered_is_told():
     assert not of("coverage-far", readiness_findings(Case.of(all_of_it, model)))
 
 
+@pytest.mark.long
 def test_a_place_that_may_be_just_the_city_is_told_until_somebody_says_it():
     model, plan = planned()
     city = replace(model, site=replace(model.site, place_from="ifc-site"))

@@ -57,6 +57,7 @@ def test_summaries_are_json_and_name_the_better_plan():
     assert summary["constraints"]["min_distance_m"] == 5.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("changes", "message"),
     [

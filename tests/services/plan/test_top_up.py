@@ -143,6 +143,7 @@ def test_a_flight_of_another_plan_is_refused_by_its_checksum() -> None:
         flown_plan(flight([[0, 1]]), other, site())
 
 
+@pytest.mark.long
 def test_a_flight_without_checksum_is_refused_where_no_photo_is_near_a_view() -> None:
     away = replace(flight([[0, 1]], position_enu_m=(500.0, 0.0, 20.0)), plan_sha256="")
     with pytest.raises(InputError, match="none of its 2 photos was taken near a view"):

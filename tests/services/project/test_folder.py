@@ -66,6 +66,7 @@ def project(tmp_path):
     return folder, create_project(folder, document("roof", 2))
 
 
+@pytest.mark.long
 @settings(max_examples=60)
 @given(made=documents(), name=st.text(max_size=10))
 def test_any_document_survives_saving_and_opening(tmp_path_factory, made, name):

@@ -55,6 +55,7 @@ def test_another_program_is_told_and_the_lock_ends_with_its_holder(tmp_path, oth
         assert lock_holder(tmp_path).is_this_process
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("content", [b"", b"{", b'{"process": "x"}'])
 def test_a_damaged_note_on_the_holder_is_no_obstacle(tmp_path, content):
     with lock_project(tmp_path):

@@ -59,6 +59,7 @@ ELSEWHERE = (900.0, 0.0, 50.0)
 AROUND = (0.0, 0.0, 400.0)
 
 
+@pytest.mark.long
 @BOTH
 def test_a_fence_of_an_earlier_flight_of_ours_is_cleared_and_nothing_else(orders, bare, autopilot):
     earlier = square(orders, *ELSEWHERE, inside=True)
@@ -84,6 +85,7 @@ def test_a_fence_of_an_earlier_flight_of_ours_is_cleared_and_nothing_else(orders
     assert last(run, "geofence").text == "none is on board, and the sortie needs none"
 
 
+@pytest.mark.long
 @BOTH
 def test_a_fence_of_an_earlier_sortie_gives_way_to_this_one(orders, autopilot):
     earlier = square(orders, *ELSEWHERE, inside=False)
@@ -96,6 +98,7 @@ def test_a_fence_of_an_earlier_sortie_gives_way_to_this_one(orders, autopilot):
     assert last(run, "geofence").verdict is Verdict.OK
 
 
+@pytest.mark.long
 @BOTH
 def test_a_fence_of_others_around_the_sortie_stays_and_is_told(orders, bare, autopilot):
     foreign = square(orders, *AROUND, inside=True)
@@ -135,6 +138,7 @@ def test_a_fence_that_is_switched_off_is_told_and_grounds_nothing(orders, bare):
     assert switched.verdict is Verdict.BAD, "it is switched on in flight"
 
 
+@pytest.mark.long
 @BOTH
 def test_a_fence_of_others_never_gives_way_to_ours_unasked(orders, autopilot):
     foreign = square(orders, *AROUND, inside=True)

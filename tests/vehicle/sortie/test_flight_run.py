@@ -58,6 +58,7 @@ def codes(outcome):
     return [event.code for event in outcome.record.events]
 
 
+@pytest.mark.long
 @BOTH
 def test_a_sortie_is_flown_and_recorded(orders, autopilot):
     toy = toy_at_home(orders, autopilot=autopilot)
@@ -142,6 +143,7 @@ def test_an_aircraft_far_from_the_planned_home_is_not_started(orders):
     assert "5.5 m from the planned home" in str(outcome.error)
 
 
+@pytest.mark.long
 @pytest.mark.few(2)
 @BOTH
 @pytest.mark.parametrize("stands_m", [-3.0, 10.0])

@@ -121,6 +121,7 @@ def test_null_values_are_plain_surfaces(tmp_path: Path) -> None:
     assert imported(content, tmp_path).model.site.n_panels == 1
 
 
+@pytest.mark.long
 @pytest.mark.few(3)
 @pytest.mark.parametrize(
     ("path", "value", "said"),

@@ -42,6 +42,7 @@ def tilted(tmp_path_factory):
     return path
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("crs", "turn_deg", "pixel", "tolerance_m"),
     [
@@ -160,6 +161,7 @@ def tile(
     return path
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("lat", "lon", "tiles"),
     [

@@ -86,6 +86,7 @@ def ground_of(*parts: TriangleMesh) -> Ground:
     return find_ground(join(list(parts)).corners_enu_m)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", CLEAR)
 def test_the_ground_is_where_anyone_would_see_it(case: str) -> None:
     parts, wanted = CLEAR[case]
@@ -260,6 +261,7 @@ def test_answers_are_in_the_heights_of_the_file(tmp_path: Path) -> None:
     assert answers == (-3.0, 0.0)
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("scale", "unit", "said"),

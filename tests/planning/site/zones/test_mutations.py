@@ -77,6 +77,7 @@ def test_the_files_themselves_are_in_the_way(name):
     assert all(near.is_kept and prisms(near.local, AIRSPACE) for near in zones)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", FILES)
 @given(data=st.data())
 def test_a_file_with_other_bytes_is_read_or_refused_and_no_longer_the_one_that_was_added(name, data):

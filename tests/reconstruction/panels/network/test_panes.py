@@ -262,6 +262,7 @@ def test_confidences_fitted_to_pictures_are_probabilities_of_others(tmp_path: Pa
     assert is_there[probability < 0.2].mean() < 0.3
 
 
+@pytest.mark.long
 def test_each_picture_is_looked_at_by_the_network_that_has_not_learned_from_it() -> None:
     def n_candidates(*networks: PaneNetwork) -> int:
         made = synthetic_picture(7_000_200, 192)
@@ -453,6 +454,7 @@ def bank_of(pictures: list[SyntheticPicture], source: int = 0) -> CropSampler:
     return bank
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(8))
 def test_crops_show_what_opencv_shows_of_the_same_view(seed: int) -> None:
     made = next(

@@ -127,6 +127,7 @@ def test_without_inclined_lines_nothing_changes_and_the_reason_is_told() -> None
     assert (without.decision.on, without.decision.decided_by) == (False, "user")
 
 
+@pytest.mark.long
 def test_an_empty_facade_calls_for_no_search_and_says_why() -> None:
     columns, rows = spans(np.full(8, 70.0), 6.0, 50.0), spans(np.full(6, 70.0), 6.0, 50.0)
     plain = draw(columns, rows, (720, 570), 6.0, reflection=0.0, clutter=False).picture

@@ -64,6 +64,7 @@ def test_columns_of_other_widths_are_found(widths: Array) -> None:
     check(segment_rectified(truth.picture), truth)
 
 
+@pytest.mark.long
 def test_panels_are_numbered_from_below_with_corners_counter_clockwise() -> None:
     truth = made()
     grid = segment_rectified(truth.picture)
@@ -75,6 +76,7 @@ def test_panels_are_numbered_from_below_with_corners_counter_clockwise() -> None
     assert len({panel.id for panel in grid.panels}) == 54
 
 
+@pytest.mark.long
 def test_a_single_panel_is_found() -> None:
     truth = made(1, 1, seed=2, clutter=False)
     check(segment_rectified(truth.picture), truth, 1.0)
@@ -163,6 +165,7 @@ def test_tiny_pictures_hold_no_panels(shape: tuple[int, int]) -> None:
     assert segment_rectified(np.zeros(shape, np.uint8)).panels == ()
 
 
+@pytest.mark.long
 def test_strong_noise_leaves_the_grid() -> None:
     truth = made(seed=7)
     noisy = truth.picture + np.random.default_rng(0).normal(0.0, 12.0, truth.picture.shape)
@@ -179,6 +182,7 @@ def test_saturated_panes_leave_the_grid() -> None:
     assert rows.shape == truth.rows.shape
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("detector", DETECTORS)
 def test_every_detector_finds_the_grid(detector: Detector) -> None:

@@ -142,6 +142,7 @@ def test_photos_without_anything_are_left_as_they_are() -> None:
     assert all(not grid.panels for grid in found.grids.values())
 
 
+@pytest.mark.long
 def test_the_view_is_what_was_asked_for_and_its_size_is_told() -> None:
     flat = SurfaceView(posed()[0], facade().fit.surface, facade().low_st_m, facade().high_st_m, 20.0)
     round_wall = replace(flat, surface=replace(flat.surface, curvature_per_m=0.05))

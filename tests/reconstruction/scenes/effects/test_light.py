@@ -182,6 +182,7 @@ def test_on_a_bowed_pane_the_sun_is_found_where_it_is() -> None:
     assert decided.size == pytest.approx(float(np.sqrt((change**2).mean())), rel=0.4)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("used", [True, False])
 def test_what_stands_before_the_facade_hides_it(used: bool) -> None:
     y = -5.0 if used else -16.0

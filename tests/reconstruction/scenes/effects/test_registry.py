@@ -82,6 +82,7 @@ def decision(made: Scene, cameras: Sequence[PosedPhoto], effect: str) -> Decisio
     return decide_effects(made, cameras, RenderSettings())[effect]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("away_m", "used"), [(20.0, True), (20_000.0, False)])
 def test_near_things_are_mirrored_from_where_they_are(away_m: float, used: bool) -> None:
     made = scene(board(-away_m, 3.0 * away_m, ramp(4.0 * away_m)), corners=facing_south(60.0, 12.0))
@@ -97,6 +98,7 @@ def test_near_things_are_mirrored_from_where_they_are(away_m: float, used: bool)
         assert decided.size > moved
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("tilt_rad", "used"), [(0.004, True), (0.0002, False)])
 def test_tilts_that_move_mirror_images_are_simulated(tilt_rad: float, used: bool) -> None:
     flat = scene(board(half_m=24.0, texture=blobs(12.0)), corners=facing_south(12.0, 8.0))
@@ -126,6 +128,7 @@ def test_double_images_are_simulated_where_they_are_seen_apart(away_m: float, us
     assert decided.on == used == (moved > decided.tolerance)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("heading_deg", "focal_px", "used"), [(70.0, 300.0, True), (0.0, 3000.0, False)])
 def test_reflectance_by_the_angle_counts_where_panes_are_seen_from_the_side(
     heading_deg: float, focal_px: float, used: bool
@@ -138,6 +141,7 @@ def test_reflectance_by_the_angle_counts_where_panes_are_seen_from_the_side(
     assert decided.size == pytest.approx(change, rel=0.25, abs=0.05)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("used", [True, False])
 def test_glass_is_mirrored_in_glass_where_panes_see_each_other(used: bool) -> None:
     corners = facing_south(8.0, 6.0)

@@ -51,6 +51,7 @@ def test_rays_that_miss_or_look_away_hit_nothing() -> None:
         assert np.isnan([t, s, h]).all()
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("layout", "curvature"),

@@ -94,6 +94,7 @@ def test_a_bowed_pane_makes_the_suns_image_narrower_and_its_light_less() -> None
     assert light[1] / light[0] == pytest.approx(1.0 / 2.84, rel=0.01)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("near_field", ["on", "off"])
 def test_what_stands_before_the_sun_hides_its_mirror_image(near_field: str) -> None:
     made = scene(ground(), sky=BEHIND)

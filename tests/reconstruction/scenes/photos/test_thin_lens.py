@@ -171,6 +171,7 @@ def test_lenses_that_are_none_are_refused(field: str, value: float) -> None:
         CameraModel(**{field: value})  # type: ignore[arg-type]
 
 
+@pytest.mark.long
 def test_a_rendered_photo_goes_through_the_lens_where_the_effect_is_on_alone(tmp_path: Path) -> None:
     def rendered(pupil_mm: float | None, setting: EffectSetting) -> dict[str, bytes]:
         job = job_for(build_scene(single_panel(), Look(near=False), 2), tmp_path)

@@ -110,6 +110,7 @@ def test_panes_are_the_panels_and_can_be_flown_before(name: str) -> None:
     assert np.isfinite(walls.cast(panels.centroids - 0.01 * panels.normals, -panels.normals).distance_m).all()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["planar", "curved", "planar-far", "curved-far"])
 def test_facades_have_the_papers_proportions(name: str) -> None:
     panels = panel_frames(scene_of(name).panes.corners_enu_m)

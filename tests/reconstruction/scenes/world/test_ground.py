@@ -35,6 +35,7 @@ def step(x, y):
     return np.where(y < -40.0, -3.0, 0.0)
 
 
+@pytest.mark.long
 def test_flat_terrain_is_off_and_the_scene_is_that_of_level_ground():
     flat = hill_site(lambda x, y: 0.0 * x)
     decision = decide_ground(flat)

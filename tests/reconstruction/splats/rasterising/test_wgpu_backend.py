@@ -117,6 +117,7 @@ def hard_cases() -> Iterator[tuple[str, MadeSplats]]:
     yield "faint", one_splat(opacity=1.2 / 255.0)
 
 
+@pytest.mark.long
 @pytest.mark.few(8)
 @pytest.mark.parametrize(
     ("name", "splats"), list(hard_cases()), ids=lambda value: value if isinstance(value, str) else ""
@@ -126,6 +127,7 @@ def test_hard_splats_are_the_defined_ones(name: str, splats: MadeSplats) -> None
         by_card(splats, settings)
 
 
+@pytest.mark.long
 @given(
     tilt_deg=st.floats(0.0, 180.0),
     turned_deg=st.floats(-180.0, 180.0),

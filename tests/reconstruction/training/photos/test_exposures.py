@@ -150,6 +150,7 @@ def exposed(source, *settings):
     return told.gains, told.own_exposures
 
 
+@pytest.mark.long
 def test_points_tell_gains_where_photos_were_exposed_one_by_one(tmp_path):
     source = painted(tmp_path, GAINS)
     gains, decision = exposed(source)
@@ -202,6 +203,7 @@ def turned_by(photo, off_px, seed):
     return replace(photo, pose=replace(photo.pose, cam_from_enu=turn @ photo.pose.cam_from_enu))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("is_exposed", [False, True])
 def test_what_frames_show_of_glass_beside_them_is_no_exposure(tmp_path, is_exposed):
     """Beside where poses say, frames look like the panes, which are brighter and darker from photo to photo."""
@@ -300,6 +302,7 @@ def test_hidden_points_and_clipped_pixels_tell_nothing(tmp_path):
     assert gains_from_points(source, source.photos, BEHIND, wall).n_told == 0
 
 
+@pytest.mark.long
 def test_training_begins_with_what_points_tell_and_keeps_it(tmp_path):
     tiny = ReflectionConfig(environment_rows=8, steps=2, batch=64)
     config = TrainConfig(iterations=2, n_splats=100, max_splats=100, light="harmonics", reflections=tiny)

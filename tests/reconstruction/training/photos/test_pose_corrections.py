@@ -141,6 +141,7 @@ def test_a_corrected_picture_is_that_of_the_corrected_camera_bit_by_bit(scene):
         assert not torch.equal(model(view, move=move).display, model(view).display)
 
 
+@pytest.mark.long
 def test_a_camera_that_is_off_finds_its_place_again(scene):
     model, photo = scene
     view, poses = View.of(photo, np.zeros(3)), PoseCorrections([photo], np.array([0.0, 0.0, 2.0]))
