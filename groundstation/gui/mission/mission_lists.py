@@ -263,13 +263,14 @@ class SortieTable(QTableView):
         if self._plan is not None and self._plan.landed_s is not None:
             titles.insert(1, self.tr("Start"))
         self._rows.setHorizontalHeaderLabels(titles)
-        time, length, used = (self._rows.horizontalHeaderItem(len(titles) - k) for k in (3, 2, 1))
+        tips = {len(titles) - 2: self.tr("Length of the flight")}
+        tips[len(titles) - 1] = self.tr("Part of the battery's endurance that the sortie takes")
         if self._plan is not None:
-            extra_s = self._plan.rules.takeoff_landing_s
             text = self.tr("With {0:.0f} s for take-off and landing, which the height profile does not show")
-            time.setToolTip(text.format(extra_s))
-        length.setToolTip(self.tr("Length of the flight"))
-        used.setToolTip(self.tr("Part of the battery's endurance that the sortie takes"))
+            tips[len(titles) - 3] = text.format(self._plan.rules.takeoff_landing_s)
+        for column, tip in tips.items():
+            # Not by `horizontalHeaderItem`: PySide takes what lies later where such an item lay for the item still.
+            self._rows.setHeaderData(column, Qt.Orientation.Horizontal, tip, Qt.ItemDataRole.ToolTipRole)
         if self._plan is None:
             return
         for number, sortie in enumerate(self._plan.sorties, 1):

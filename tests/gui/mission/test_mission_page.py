@@ -225,6 +225,30 @@ def test_places_of_findings_lead_to_their_things(page, context, planned, said):
     assert "template.kml is not shown" in said[-1].text
 
 
+def test_headings_are_filled_again_and_again_and_leave_nothing_that_pyside_takes_for_something_else(planned, application):
+    from PySide6.QtCore import Qt
+    from PySide6.QtGui import QStandardItem
+    from shiboken6 import getAllValidWrappers
+
+    from groundstation.gui.mission.mission_lists import SortieTable
+
+    def n_items():
+        return sum(type(each) is QStandardItem for each in getAllValidWrappers())
+
+    table = SortieTable()
+    table.set_plan(planned[1])
+    before = n_items()
+    for _ in range(20):
+        table.set_plan(planned[1])
+    tips = [
+        table.model().headerData(column, Qt.Orientation.Horizontal, Qt.ItemDataRole.ToolTipRole) for column in range(5)
+    ]
+    assert [bool(tip) for tip in tips] == [False, False, True, True, True]
+    assert n_items() == before
+    table.set_plan(None)
+    table.deleteLater()
+
+
 def test_selection_goes_through_table_and_chart_and_back(page, context, planned, application):
     context.session.open(opened(planned), None)
     application.processEvents()
