@@ -170,6 +170,7 @@ def test_folder_that_cannot_be_made_is_told_before_anything_is_run(site, tmp_pat
     assert "cannot be made" in line
 
 
+@pytest.mark.long
 def test_files_of_others_in_the_folder_stay(site, tmp_path, capsys):
     (tmp_path / "notes.txt").write_text("mine")
     assert command("plan", site, "-o", tmp_path, "--min-distance", "500") == 1

@@ -124,6 +124,7 @@ def test_the_lowest_height_is_the_plan_s_or_the_site_s_or_the_usual_and_a_lower_
     assert "low-flight-allowed" not in {f.code for f in check_plan(plan(), site())}
 
 
+@pytest.mark.long
 def test_viewpoint_in_the_wall_is_told_with_its_depth() -> None:
     edited = moved(1, position_enu_m=(0.0, 3.0, 5.0))
     assert broken(edited) == {"distance", "leg-distance"}

@@ -139,6 +139,7 @@ def test_coverage_in_the_plan_is_that_of_the_contract_s_own_words(name: str) -> 
     assert len(hidden) >= len(seen)
 
 
+@pytest.mark.long
 def test_views_that_count_only_whole_and_near_are_fewer_than_the_contract_s() -> None:
     plan = planned_kiosk("whole panels from near").plan
     plain = seen_by_contract(kiosk(), plan.camera, plan.viewpoints, 30.0, occlusion=True)
@@ -156,6 +157,7 @@ def test_history_rises_within_the_time_taken_and_ends_near_the_plan_s_coverage(p
     assert abs(covered[-1] - planned.plan.coverage.covered) <= 3, "rounding and merged places cost next to nothing"
 
 
+@pytest.mark.long
 def test_goals_are_met() -> None:
     assert len(planned_kiosk("views").plan.viewpoints) == 8
     assert len(planned_kiosk("batteries").plan.sorties) == 1

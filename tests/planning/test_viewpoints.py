@@ -245,6 +245,7 @@ def test_orbits_look_inwards_from_all_around():
     assert cosine.min() > 0.95
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("method", [greedy, pso, noto, orbit])
 def test_every_method_can_be_cancelled(method):
     class Cancelling:

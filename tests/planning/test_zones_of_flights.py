@@ -100,6 +100,7 @@ def test_each_format_says_what_the_path_enters_and_how_far_it_stays_away(name):
     assert not [f for f in zone_findings(FORMATS[name](square(0.0, -4000.0, 10.0))) if f.code == "zone"]
 
 
+@pytest.mark.long
 def test_zones_above_and_below_the_path_are_clear_by_their_heights():
     top = max(point[2] for point in flight().sorties[0].path_enu_m)
     above = one(zone_findings(around(-90, -90, 90, 90, lower=top + 12.0)))

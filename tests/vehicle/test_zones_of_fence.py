@@ -102,6 +102,7 @@ def test_zones_of_the_time_come_back_from_the_vehicle_as_they_were_sent(autopilo
     assert not any(zone.holds(-60.0, -60.0) for zone in zones), "that of the night"
 
 
+@pytest.mark.long
 def test_only_zones_that_apply_then_and_that_are_not_permitted_go_up():
     def n_polygons(at, **permitted):
         return len(orders_of(at, **permitted)[2].fences[Autopilot.PX4])

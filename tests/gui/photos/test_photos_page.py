@@ -265,6 +265,7 @@ def stated(one, other, metres):
     return step
 
 
+@pytest.mark.long
 def test_a_distance_is_asked_for_where_the_size_is_not_known(page, controller, folder, tmp_path):
     few = tmp_path / "few"
     few.mkdir()

@@ -86,6 +86,7 @@ def ours(items: list[Any]) -> tuple[MissionItemInt, ...]:
     return tuple(MissionItemInt(1, 1, **{name: getattr(item, name) for name in names}) for item in items)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("autopilot", "kind"), [(ARDUPILOT, "udp"), (PX4, "tcpin"), slow(ARDUPILOT, "tcpin"), slow(PX4, "udp")]
 )
@@ -115,6 +116,7 @@ def test_mavsdks_client_uploads_to_our_vehicle_and_reads_back_the_same(autopilot
         assert len(vehicle.stores.mission) == (autopilot is ARDUPILOT)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("autopilot", [ARDUPILOT, PX4])
 def test_what_mavsdk_uploaded_our_client_reads_and_the_other_way_round(autopilot: Autopilot) -> None:
     items = to_wire(planned(autopilot, 40), autopilot)

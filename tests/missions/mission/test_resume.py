@@ -129,6 +129,7 @@ def around(items: tuple[MissionItem, ...], viewpoint_id: str) -> list[tuple[int,
     return kept
 
 
+@pytest.mark.long
 @pytest.mark.few(3)
 @pytest.mark.parametrize("file_format", [FileFormat.DJI_KMZ, FileFormat.MAVLINK_PLAN, FileFormat.MAVLINK_WPL])
 @pytest.mark.parametrize("autopilot", list(Autopilot))

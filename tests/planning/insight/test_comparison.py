@@ -74,6 +74,7 @@ def test_the_better_value_is_the_one_that_its_row_says():
     assert best(Better.LOWER, None, 5.0) == ()
 
 
+@pytest.mark.long
 def test_plans_made_for_other_constraints_are_counted_under_the_first_ones_and_noted():
     other = replace(planned(), constraints=Constraints(8.0, section_step_deg=15.0, occlusion="auto"))
     found = compared(planned(), other)

@@ -65,6 +65,7 @@ def test_legs_elsewhere_are_not_drawn_anew() -> None:
     assert turned.plan.sorties[0].duration_s != before.plan.sorties[0].duration_s
 
 
+@pytest.mark.long
 def test_a_viewpoint_behind_the_building_is_flown_around_it() -> None:
     after = move(planned("kiosk"), "v0003", (0.0, 16.0, 6.0), 180.0, 0.0)
     assert not errors(after)

@@ -157,6 +157,7 @@ def test_a_plan_with_another_aircraft_is_measured_anew() -> None:
     assert revise(slow, start.prepared, start).findings != start.findings
 
 
+@pytest.mark.long
 def test_corner_stretches_are_all_that_differs_between_stopping_and_flying_through() -> None:
     plan = planned("canyon").plan
     limits = motion_limits(plan.aircraft, plan.rules)

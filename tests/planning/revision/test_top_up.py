@@ -285,6 +285,7 @@ def test_a_battery_for_one_view_flies_one_view() -> None:
     assert 0 < found.closed < found.wanted
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize(
     ("charge", "words"), [(0.25, "leave nothing to fly on; change the battery"), (0.262, "change the battery")]

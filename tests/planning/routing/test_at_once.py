@@ -93,6 +93,7 @@ def changed(plan: Plan, number: int, **changes: object) -> Plan:
     return replace(plan, sorties=tuple(sorties))
 
 
+@pytest.mark.long
 def test_starts_that_were_changed_or_lost_are_errors():
     site_model, plan = flown()
     together = changed(changed(plan, 0, start_s=0.0), 1, start_s=0.0)

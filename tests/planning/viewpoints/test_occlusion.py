@@ -66,6 +66,7 @@ def test_skipped_occlusion_does_not_even_load_the_ray_caster(monkeypatch):
     assert not decide(Occlusion(), scene).on
 
 
+@pytest.mark.long
 def test_estimated_share_agrees_with_a_larger_sample_in_float64():
     scene = occlusion_scene("court")
     space = free_space(SCENES["court"](), 10.0)

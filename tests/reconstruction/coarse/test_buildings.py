@@ -183,6 +183,7 @@ def test_a_building_moves_as_a_whole(plain):
     np.testing.assert_allclose(other.walls[0].line, plain.walls[0].line + shift[:2])
 
 
+@pytest.mark.long
 def test_no_points_on_walls_give_no_blocks_and_a_note():
     cloud = made_cloud()
     flat = cloud.of(cloud.points[:, 2] < 0.2)

@@ -70,6 +70,7 @@ def test_rough_light_is_what_a_ggx_lobe_sees(roughness, share):
     assert error < share * truth.std(axis=0).mean()
 
 
+@pytest.mark.long
 def test_light_on_matt_surfaces_is_irradiance_over_pi():
     made, asked = filled(), directions(40)
     places = texel_directions(64)

@@ -71,6 +71,7 @@ def test_in_the_middle_of_a_pixel_stands_its_value_and_between_two_their_mean():
     assert found[:, 0].tolist() == pytest.approx([1.0, 2.0, 3.0], abs=1e-4)
 
 
+@pytest.mark.long
 def test_gradients_are_those_of_finite_differences():
     environment = filled(8).double()
     directions = directions_at(torch.tensor([10.0, 100.0, -170.0, 33.0]), torch.tensor([5.0, -40.0, 60.0, 80.0]))

@@ -232,6 +232,7 @@ def test_on_a_cuda_device_it_learns_the_same(photos, model):
         assert value.shape == here.panels.state_dict()[name].shape
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("model", MODELS)
 def test_on_another_device_all_that_a_step_needs_is_there(photos, model, monkeypatch):
@@ -253,6 +254,7 @@ def test_on_another_device_all_that_a_step_needs_is_there(photos, model, monkeyp
     assert {value.device.type for value in found} == {"meta"}
 
 
+@pytest.mark.long
 def test_rays_of_somebody_who_walked_by_are_left_out_and_stay_out(photos):
     rays, planes, unseen = photos
     person = (rays.photos == 1) & (rays.columns >= 8) & (rays.columns < 24)

@@ -69,6 +69,7 @@ def write_flight(folder, views):
         save(folder / f"DJI_20240501100{i:03d}_{i + 1:04d}_V.JPG", jpeg(exif, packet(properties), base=base))
 
 
+@pytest.mark.long
 def test_a_flight_comes_from_the_card_with_poses_quality_and_coverage(tmp_path):
     views = flight()
     write_flight(tmp_path, views)

@@ -190,6 +190,7 @@ def test_the_process_of_its_own_does_the_same(book, tmp_path):
     assert contents(book) == kept
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("schema", SCHEMAS)
 @settings(max_examples=4, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(found=st.lists(entries, max_size=6))

@@ -161,6 +161,7 @@ def test_splats_are_added_only_between_the_shares_that_are_told(make):
     assert all(0.7 * 220 < step <= 0.95 * 220 + 1 for step in changes)
 
 
+@pytest.mark.long
 @pytest.mark.few(1)
 @pytest.mark.parametrize("light", [None, "harmonics", "environment-map", "mlp", "radiance-grid"])
 def test_interrupted_training_goes_on_bit_by_bit(make, tmp_path, light):

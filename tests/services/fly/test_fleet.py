@@ -84,6 +84,7 @@ def fleet():
     return Fleet(replace(sortie().case, plan=twice), Path())
 
 
+@pytest.mark.long
 def test_a_start_waits_until_the_other_is_out_of_the_way_and_longer_for_a_slow_autopilot():
     found, usual = fleet(), {1: 1.0, 2: 1.0}
     assert found.wait_s(2, {}, usual) == 0.0

@@ -112,6 +112,7 @@ def test_every_call_reports_however_soon_it_follows_the_one_before(worker):
         assert "doubling" in reports.stages
 
 
+@pytest.mark.long
 def test_the_work_is_done_in_one_other_process(worker):
     assert worker.run(where) == worker.run(where) != os.getpid()
 

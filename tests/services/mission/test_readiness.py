@@ -117,6 +117,7 @@ def test_a_place_that_may_be_just_the_city_is_told_until_somebody_says_it():
     assert not of("place", preflight(plan, said).findings)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("profile", "n_views", "is_told"), [("ardupilot", 400, True), ("m3e", 400, False)])
 def test_sorties_that_an_autopilot_cannot_hold_are_told(profile, n_views, is_told):
     plan = planned()[1]

@@ -144,6 +144,7 @@ def on_slope(path, **stated):
     return sora_draft(flown(ROUND), model, request, "slope", n_fly_aways=60)
 
 
+@pytest.mark.long
 def test_a_raster_of_the_ground_beside_a_site_makes_the_buffer_follow_it(tmp_path):
     draft = on_slope(tmp_path / "dtm.tif")
     risk = draft.risk

@@ -52,6 +52,7 @@ def test_problems_that_come_and_go_with_an_edit_are_told_and_those_that_stay_are
     assert gone.problems == ()
 
 
+@pytest.mark.long
 def test_locking_changes_nothing_that_is_measured() -> None:
     start = planned("kiosk")
     effect = edit_effect(start, lock(start, ["v0001"]))

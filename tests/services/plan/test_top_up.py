@@ -152,6 +152,7 @@ def test_a_flight_without_checksum_is_refused_where_no_photo_is_near_a_view() ->
     assert len(flown_plan(near, planned(), site()).photographed) == 2
 
 
+@pytest.mark.long
 def test_a_flight_at_another_place_is_refused() -> None:
     elsewhere = replace(flight([[0]]), origin=Origin(1.0, 2.0, 3.0))
     with pytest.raises(InputError, match="do not have the same name and origin; name"):

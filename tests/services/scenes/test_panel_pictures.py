@@ -103,6 +103,7 @@ def test_tiles_are_all_of_the_walls_and_lie_in_them():
     assert len(wall_tiles(line)) == 0
 
 
+@pytest.mark.long
 def test_walls_have_the_colours_of_the_places_that_photos_show(monkeypatch):
     """Photos painted by where in the world each pixel lies, on the plane of the wall."""
     model = site_model()

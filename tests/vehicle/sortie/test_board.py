@@ -75,6 +75,7 @@ def start_after(orders, toy, change, wait_s=3.0):
     return run, conduct(run, ToyLink(toy), lambda: toy.now_s, show=show)
 
 
+@pytest.mark.long
 @pytest.mark.few(3)
 @BOTH
 @SWAPS

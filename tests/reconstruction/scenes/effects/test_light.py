@@ -99,6 +99,7 @@ def test_a_scene_without_rooms_has_none_to_see_through() -> None:
     assert (decided.on, decided.size, decided.reason) == (False, 0.0, "there are no rooms behind the panes")
 
 
+@pytest.mark.long
 @pytest.mark.few(2)
 @pytest.mark.parametrize(("heading_deg", "width_px", "used"), [(-4.0, 96, True), (-4.0, 256, True), (40.0, 96, False)])
 def test_suns_that_panes_mirror_are_simulated(heading_deg: float, width_px: int, used: bool) -> None:

@@ -122,6 +122,7 @@ def test_facades_have_the_papers_proportions(name: str) -> None:
     assert turn == pytest.approx(0.0 if name.startswith("planar") else 62.8, abs=0.2)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["planar", "curved"])
 def test_far_scenes_differ_by_what_is_near_alone(name: str) -> None:
     near, far = scene_of(name), scene_of(f"{name}-far")

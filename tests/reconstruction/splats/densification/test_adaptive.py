@@ -57,6 +57,7 @@ def test_detail_is_learned_better_with_more_splats(learned):
     assert error(grown, views, truths) < error(plain, views, truths) / 1.7
 
 
+@pytest.mark.long
 def test_splats_go_where_the_detail_is(learned):
     grown = learned[3]
     on_left = (grown.means[:, 0] < 0.0).float().mean()

@@ -175,6 +175,7 @@ def test_any_splat_is_the_defined_one(
             assert relative_error(gradient, true_gradient) < 1e-3, name
 
 
+@pytest.mark.long
 def test_what_is_no_number_is_not_drawn_and_spoils_nothing() -> None:
     good, view = one_splat(), level_view()
     alone = draw(good, view, "wgpu", seed=None).raster.features

@@ -47,6 +47,7 @@ def pictures(trained, data_set):
         return [trained.model(photos.frame(number).view).display for number in range(2)]
 
 
+@pytest.mark.long
 @pytest.mark.few(2)
 @pytest.mark.parametrize("light", ["harmonics", "environment-map", "mlp", "radiance-grid"])
 def test_models_are_read_back_bit_by_bit(data_set, tmp_path, light):

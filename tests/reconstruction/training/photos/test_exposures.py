@@ -255,6 +255,7 @@ def test_a_photo_of_something_else_tells_no_gain_and_is_named(tmp_path, what):
     assert not kept.own_exposures.on
 
 
+@pytest.mark.long
 def test_what_few_photos_leave_open_all_decide(tmp_path, monkeypatch):
     source = painted(tmp_path, np.ones((N, 3)))
     show_something_else(source.photos[2], 0.3 * patches(source.photos[2], 5))
@@ -285,6 +286,7 @@ def test_photos_of_the_place_are_no_outliers_however_they_were_exposed(tmp_path)
     assert told_by_points(even, even.photos, POINTS, empty_mesh()).outliers == (), "an even wall has nothing to tell by"
 
 
+@pytest.mark.long
 def test_hidden_points_and_clipped_pixels_tell_nothing(tmp_path):
     bright = GAINS.copy()
     bright[0] = 2.6  # half of the photo is white
