@@ -225,9 +225,7 @@ def test_places_of_findings_lead_to_their_things(page, context, planned, said):
     assert "template.kml is not shown" in said[-1].text
 
 
-def test_headings_are_filled_again_and_again_and_leave_nothing_that_pyside_takes_for_something_else(
-    planned, application
-):
+def test_headings_that_are_filled_again_leave_nothing_that_pyside_takes_for_something_else(planned, application):
     from PySide6.QtCore import Qt
     from PySide6.QtGui import QStandardItem
     from shiboken6 import getAllValidWrappers

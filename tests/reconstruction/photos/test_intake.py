@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
+import pytest
 
 from planning.aircraft.catalogue import profile
 from planning.coverage.evaluate import coverage_counts
