@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cmp_to_key
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QPainter, QPaintEvent, QPen
@@ -14,27 +15,32 @@ FRAME_PX = 2
 def next_in_order(regions: Sequence[QWidget], current: QWidget | None, *, forward: bool) -> QWidget | None:
     """The widget that gets the focus after `current`; None where no region takes it.
 
-    Within a region the order is Qt's own; after the last widget the first one follows. What is outside all regions is
-    skipped; from a frame inside one it goes on beside it.
+    After the last widget the first one follows. What is outside all regions is skipped; from a frame inside one it goes
+    on beside it.
 
     Parameters
     ----------
     regions
         Of one window, none inside another.
     """
-    stops = _stops(regions)
+    shown = [widget for region in regions for widget in _shown_in(region)]
+    stops = [place for place, widget in enumerate(shown) if _takes_tab(widget)]
     if not stops:
         return None
-    if current not in stops:
-        is_inside = any(region is current or region.isAncestorOf(current) for region in regions if current is not None)
-        neighbour = _beside(stops, current, forward) if is_inside else None
-        return stops[0 if forward else -1] if neighbour is None else neighbour
-    return stops[(stops.index(current) + (1 if forward else -1)) % len(stops)]
+    while current is not None and current not in shown:
+        current = current.parentWidget()
+    if current is None:
+        return shown[stops[0 if forward else -1]]
+    here = shown.index(current)
+    beside = [place for place in stops if place > here] if forward else [place for place in stops if place < here]
+    if not beside:
+        beside = stops
+    return shown[beside[0 if forward else -1]]
 
 
 def first_in(region: QWidget) -> QWidget | None:
     """The first widget of a region that Tab reaches."""
-    return next(_stops_in(region), None)
+    return next((widget for widget in _shown_in(region) if _takes_tab(widget)), None)
 
 
 class FocusFrame(QFocusFrame):
@@ -77,50 +83,29 @@ def set_enabled(widget: QWidget, is_enabled: bool) -> None:
     widget.setEnabled(is_enabled)
 
 
-def _beside(stops: Sequence[QWidget], current: QWidget | None, forward: bool) -> QWidget | None:
-    """The stop next to a widget that is none, where there is one."""
-    widget = current
-    while widget is not None:
-        widget = widget.nextInFocusChain() if forward else widget.previousInFocusChain()
-        if widget is current or widget in stops:
-            return None if widget is current else widget
-    return None
+def _shown_in(region: QWidget) -> Iterator[QWidget]:
+    """A region and what is shown in it, from the top to the bottom; what is beside each other from left to right.
+
+    Qt's own order cannot be asked for: PySide takes each widget that `nextInFocusChain` gives for a part of the one it
+    was asked of. With that one go, in Python, all that follow it, the window's menus and rows among them, and the next
+    time these are laid out the process ends.
+    """
+    if not region.isVisible():
+        return
+    yield region
+    inside = [child for child in region.children() if isinstance(child, QWidget) and not child.isWindow()]
+    for child in sorted(inside, key=cmp_to_key(_reading_order)):
+        yield from _shown_in(child)
 
 
-def _stops(regions: Sequence[QWidget]) -> list[QWidget]:
-    """All stops in order. The window's chain of widgets is walked once: it is long, and most of it is hidden."""
-    if not regions:
-        return []
-    chain = list(_chain(regions[0]))
-    reached = [(place, widget) for place, widget in enumerate(chain) if _takes_tab(widget)]
-    found: list[QWidget] = []
-    for region in regions:
-        first = chain.index(region)
-        inside = [(place < first, place, widget) for place, widget in reached if _is_in(region, widget)]
-        found += [widget for _is_before, _place, widget in sorted(inside, key=lambda stop: stop[:2])]
-    return found
-
-
-def _stops_in(region: QWidget) -> Iterator[QWidget]:
-    return (widget for widget in _chain(region) if _takes_tab(widget) and _is_in(region, widget))
-
-
-def _chain(first: QWidget) -> Iterator[QWidget]:
-    """The widgets of a window in Qt's own order, from one of them on."""
-    widget: QWidget | None = first
-    while widget is not None:
-        yield widget
-        widget = widget.nextInFocusChain()
-        if widget is first:
-            return
-
-
-def _is_in(region: QWidget, widget: QWidget) -> bool:
-    return region is widget or region.isAncestorOf(widget)
+def _reading_order(one: QWidget, other: QWidget) -> int:
+    """Negative where one is read before the other."""
+    a, b = one.geometry(), other.geometry()
+    common = min(a.bottom(), b.bottom()) - max(a.top(), b.top())
+    is_beside = 2 * common > min(a.height(), b.height())
+    return a.left() - b.left() if is_beside else a.top() - b.top()
 
 
 def _takes_tab(widget: QWidget) -> bool:
-    # What most widgets fail at first: they are in tabs that are not shown.
-    if not (widget.isVisible() and widget.isEnabled()):
-        return False
-    return bool(widget.focusPolicy() & Qt.FocusPolicy.TabFocus) and widget.focusProxy() is None
+    takes_keys = widget.isEnabled() and bool(widget.focusPolicy() & Qt.FocusPolicy.TabFocus)
+    return takes_keys and widget.focusProxy() is None

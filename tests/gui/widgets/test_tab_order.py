@@ -79,6 +79,40 @@ def test_from_outside_all_regions_it_begins_anew_and_without_stops_there_is_none
     assert first_in(right).objectName() == "right 1"
 
 
+def test_order_is_as_it_is_read_whatever_was_made_first(form):
+    window, _left, _right = form
+    assert names_from((window,), None, 6) == ["right 1", "right 2", "left 1", "left 2", "outside", "right 1"]
+
+
+def test_from_a_frame_it_goes_on_beside_it_and_from_what_was_hidden_beside_what_that_was_in(form):
+    from PySide6.QtWidgets import QLineEdit
+
+    _window, left, right = form
+    assert names_from((right, left), left, 1) == ["left 1"]
+    assert names_from((right, left), left, 1, forward=False) == ["right 2"]
+    edit = right.findChild(QLineEdit, "right 2")
+    edit.hide()
+    assert names_from((right, left), edit, 1) == ["right 1"]
+
+
+@pytest.mark.parametrize("forward", [True, False])
+def test_what_goes_takes_nothing_along_that_tab_came_to_after_it(form, application, forward):
+    """PySide holds what its own way through the window gives for parts of what they were asked of."""
+    from PySide6.QtCore import QEvent
+    from PySide6.QtWidgets import QLineEdit
+    from shiboken6 import isValid
+
+    window, left, right = form
+    rows = [window.layout().itemAt(number) for number in range(3)]
+    names_from((left, right), None, 5, forward=forward)
+    gone = window.findChild(QLineEdit, "left 1")
+    names_from((left, right), gone, 2, forward=forward)
+    gone.deleteLater()
+    application.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    assert not isValid(gone)
+    assert all(isValid(row) for row in rows)
+
+
 @pytest.fixture(scope="module")
 def window(application, worker, tmp_path_factory):
     """The window with a site, of which tests choose the tab only."""
