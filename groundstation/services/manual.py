@@ -9,6 +9,7 @@ import itertools
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 from planning.base.files import ANY_FILE, read_input_file
@@ -133,14 +134,19 @@ def found_in(folder: Path, words: str) -> Iterator[tuple[str, str]]:
     """Pages that hold all words, each with its title: those with most of them first."""
     wanted = folded(words).split()
     counted = []
-    for chapter in chapters(folder):
-        for name, title in chapter.pages:
-            text = folded(_text(folder / name))
-            counts = [text.count(word) for word in wanted]
-            if wanted and all(counts):
-                in_title = sum(word in folded(title) for word in wanted)
-                counted.append((-in_title, -min(counts), name, title))
+    for name, title, text in _folded_pages(folder):
+        counts = [text.count(word) for word in wanted]
+        if wanted and all(counts):
+            in_title = sum(word in folded(title) for word in wanted)
+            counted.append((-in_title, -min(counts), name, title))
     yield from ((name, title) for *_, name, title in sorted(counted))
+
+
+@lru_cache(maxsize=1)
+def _folded_pages(folder: Path) -> tuple[tuple[str, str, str], ...]:
+    """Name, title and folded text of each page, read once: words are looked for with each key."""
+    pages = (page for chapter in chapters(folder) for page in chapter.pages)
+    return tuple((name, title, folded(_text(folder / name))) for name, title in pages)
 
 
 def _text(path: Path) -> str:
