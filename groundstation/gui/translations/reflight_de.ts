@@ -2987,6 +2987,10 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>{0} Fotos von {1} x {2} Pixeln brauchen dekodiert {3} Speicher.</translation>
     </message>
     <message>
+        <source>{0} photos of {1} x {2} pixels are learned from at {3} x {4}; decoded, they take {5} of memory.</source>
+        <translation>{0} Fotos mit {1} x {2} Pixeln werden mit {3} x {4} gelernt; dekodiert brauchen sie {5} Speicher.</translation>
+    </message>
+    <message>
         <source>All of them fit, and each is read once.</source>
         <translation>Alle haben Platz, und jedes wird einmal gelesen.</translation>
     </message>
