@@ -148,11 +148,8 @@ class ProgressPage(QWidget):
         layout.setContentsMargins(4, 4, 4, 4)
         for widget in (self.state, self.bar, self.numbers):
             layout.addWidget(widget)
-        for heading, plot in (
-            (self.tr("Facades of some unseen views"), self.quality),
-            (self.tr("Terms of the loss"), self.losses),
-        ):
-            title = QLabel(heading)
+        self._of_what = QLabel()
+        for title, plot in ((self._of_what, self.quality), (QLabel(self.tr("Terms of the loss")), self.losses)):
             title.setProperty("role", "heading")
             title.setWordWrap(True)
             layout.addWidget(title)
@@ -163,6 +160,12 @@ class ProgressPage(QWidget):
         self._redraw.setInterval(REDRAW_MS)
         self._redraw.timeout.connect(self._draw)
         self.set_state("", None)
+        self.set_has_facades(True)
+
+    def set_has_facades(self, has_facades: bool) -> None:
+        """Say what quality is measured on: facades, or all of the views where there are none."""
+        some, facades = self.tr("Some unseen views"), self.tr("Facades of some unseen views")
+        self._of_what.setText(facades if has_facades else some)
 
     def set_state(self, words: str, share: float | None, numbers: str = "") -> None:
         """Say where it stands; `share` done, 0 to 1, negative where that is not known, None where nothing runs."""
@@ -428,15 +431,30 @@ class ReconstructPage(GradualTab):
             if controller.training.quality.y:
                 numbers += self._quality_words()
         self.progress.set_state(words, share, numbers)
+        self.progress.set_has_facades(self._has_facades())
         self.progress.set_curves(controller.training.quality, controller.training.terms)
         self.pane.follow_training()
+
+    def _has_facades(self) -> bool:
+        card = self.controller.card
+        return card is None or len(card.source.panels.corners_enu_m) > 0
 
     def _quality_words(self) -> str:
         training = self.controller.training
         done = None if training.ended is None else training.ended.summary
         if done and done["psnr_db"] is not None:
-            return self.tr("; {0:.2f} dB on facades of {1} unseen views").format(done["psnr_db"], done["scored_views"])
-        return self.tr("; {0:.2f} dB on facades of some unseen views").format(training.quality.y[-1])
+            words = (
+                self.tr("; {0:.2f} dB on facades of {1} unseen views")
+                if self._has_facades()
+                else self.tr("; {0:.2f} dB on {1} unseen views")
+            )
+            return words.format(done["psnr_db"], done["scored_views"])
+        words = (
+            self.tr("; {0:.2f} dB on facades of some unseen views")
+            if self._has_facades()
+            else self.tr("; {0:.2f} dB on some unseen views")
+        )
+        return words.format(training.quality.y[-1])
 
     def _phase_words(self, stage: str) -> str:
         controller = self.controller

@@ -6090,6 +6090,10 @@ Blickrichtung: {3}</translation>
         <translation>Teile des Verlusts</translation>
     </message>
     <message>
+        <source>Some unseen views</source>
+        <translation>Einige neue Ansichten</translation>
+    </message>
+    <message>
         <source>Nothing is being trained.</source>
         <translation>Es wird nichts trainiert.</translation>
     </message>
@@ -6487,8 +6491,16 @@ Damit weiterarbeiten?</translation>
         <translation>; {0:.2f} dB auf Fassaden von {1} neuen Ansichten</translation>
     </message>
     <message>
+        <source>; {0:.2f} dB on {1} unseen views</source>
+        <translation>; {0:.2f} dB auf {1} neuen Ansichten</translation>
+    </message>
+    <message>
         <source>; {0:.2f} dB on facades of some unseen views</source>
         <translation>; {0:.2f} dB auf Fassaden einiger neuer Ansichten</translation>
+    </message>
+    <message>
+        <source>; {0:.2f} dB on some unseen views</source>
+        <translation>; {0:.2f} dB auf einigen neuen Ansichten</translation>
     </message>
     <message>
         <source>Breaking off; the state is being kept ...</source>
@@ -13194,6 +13206,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0}: other programs look for {1} files with names that end in {2}</source>
         <translation>{0}: andere Programme suchen {1}-Dateien mit Namen, die auf {2} enden</translation>
+    </message>
+    <message>
+        <source>{0}: unseen views</source>
+        <translation>{0}: neue Ansichten</translation>
     </message>
     <message>
         <source>{0}: zones {1}, within {2} m of the airspace {3}; SHA-256 {4}</source>

@@ -295,7 +295,7 @@ def train_tradeoff(
     OperationCancelled
         From `monitor`.
     """
-    from reconstruction.light.photo_set import check_finished
+    from reconstruction.light.photo_set import check_finished, read_photo_set
     from reconstruction.tradeoff.scene_tradeoff import ERROR_AXIS
     from reconstruction.tradeoff.train_tradeoff import run_settings, settings_of, trial_panels, trial_rows
 
@@ -304,6 +304,7 @@ def train_tradeoff(
         base = replace(base, score_every_s=min(base.score_every_s, base.time_limit_s / POINTS))
     settings = settings_of(base, knobs)
     check_finished(dataset)
-    title = say("{}: facades of unseen views", dataset.name)
+    has_panels = len(read_photo_set(dataset).panels.corners_enu_m) > 0
+    title = say("{}: facades of unseen views", dataset.name) if has_panels else say("{}: unseen views", dataset.name)
     subject: Subject[tuple[Trial, ...]] = Subject("train", ERROR_AXIS, trial_rows, lambda _: title, trial_panels)
     return compare(subject, out, lambda _: run_settings(dataset, settings, monitor))

@@ -81,10 +81,18 @@ def test_a_folder_of_colmap_is_made_a_data_set_of_plain_splats(application, page
     assert any("one unit of it counts as" in each.text for each in page.messages)
     assert page.controller.choice.method == page.side.form.value().method == "2dgs"
     assert page.side.train.isEnabled()
+    assert "Some unseen views" in headings(page)
+
+
+def headings(page):
+    from PySide6.QtWidgets import QLabel
+
+    return [label.text() for label in page.progress.findChildren(QLabel)]
 
 
 def test_a_chosen_data_set_is_shown_and_its_first_photo_looked_at(chosen):
     assert len(chosen.pane.strip.names()) == 6
+    assert "Facades of some unseen views" in headings(chosen)
     assert chosen.pane.strip.current() == chosen.pane.strip.names()[0]
     look = chosen.told.of(ViewRequest)[-1]
     assert (look.place, look.subject.kind, look.subject.name) == ("right", "photo", chosen.pane.strip.current())
