@@ -267,6 +267,7 @@ def test_masks_that_do_not_fit_are_said_and_a_data_set_of_masked_photos_can_be_p
     assert "its mask cannot be used" in done.err
     assert "has 40 x 20 pixels, and the photo's camera 40 x 30" in done.err
     assert "p03.png.png: is black everywhere" in done.err
+    assert "5 of 6 photos have a mask: what it has black does not count" in done.err
     assert "1 of 6 photos have no mask, the first p04.png: all their pixels count" in done.err
     source = read_photo_set(tmp_path / "d")
     assert [photo.name for photo in source.photos if photo.mask is None] == ["p04.png"]

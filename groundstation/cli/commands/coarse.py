@@ -15,6 +15,8 @@ from reconstruction.coarse.parameters import CoarseRequest
 EPILOG = """Writes coarse.ply, site.json (without panels), sparse/0 (a COLMAP text model in the frame of the site) and
 coarse.json, a report. An interrupted run goes on when the command is given again. The size is that of GPS, control
 points (--gcp: gcp_list.txt of OpenDroneMap or ground_control_points.json of OpenSfM) or stated distances.
+What masks have black, as COLMAP names them (masks/NAME.jpg.png in the folder, or beside one that is called images),
+gives no features.
 
 examples:
   coarse photos/ -o tower

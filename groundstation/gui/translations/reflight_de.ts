@@ -13132,6 +13132,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} von {1} Fotos fanden keinen Platz im Modell, das erste: {2}</translation>
     </message>
     <message>
+        <source>{0} of {1} photos have a mask: what it has black does not count</source>
+        <translation>{0} von {1} Fotos haben eine Maske: was in ihr schwarz ist, zählt nicht</translation>
+    </message>
+    <message>
         <source>{0} of {1} photos show glass of the site&apos;s panels, and {2} are needed; are they of this site?</source>
         <translation>{0} von {1} Fotos zeigen Glas der Paneele des Standorts, und {2} sind nötig; sind sie von diesem Standort?</translation>
     </message>

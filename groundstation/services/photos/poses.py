@@ -280,6 +280,10 @@ def masks_of(
     lost = {name: mask for name, mask in masks.items() if not mask.is_file()}
     without = [name for name in names if name not in masks]
     findings = []
+    if len(masks) > len(lost):
+        n = len(masks) - len(lost)
+        text = say("{} of {} photos have a mask: what it has black does not count", n, len(names))
+        findings.append(Finding(Severity.NOTE, "photos-masked", text, "", float(n), None, "photos"))
     if lost:
         first = next(iter(lost.values()))
         text = say("{} masks are not there, the first {}: all pixels of their photos count", len(lost), first)
