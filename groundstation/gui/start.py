@@ -74,12 +74,14 @@ def run_window(path: Path | None = None) -> int:
     from PySide6.QtCore import QTimer
     from PySide6.QtWidgets import QApplication
 
+    from groundstation.gui.application.errors import tell_errors
     from groundstation.gui.window.project_controller import ProjectController
 
     application = QApplication.instance() or QApplication(sys.argv[:1])
     assert isinstance(application, QApplication)
     application.setApplicationName("Reflight")
     controller = ProjectController(application)
+    tell_errors(controller.context)
     controller.show()
     if path is not None:
         QTimer.singleShot(0, lambda: controller.open_path(path))

@@ -1212,6 +1212,13 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     </message>
 </context>
 <context>
+    <name>Errors</name>
+    <message>
+        <source>The program made a mistake ({0}: {1}; {2}, line {3}). It goes on, but what you did last may not be done. Save your project, and report this line.</source>
+        <translation>Das Programm hat einen Fehler gemacht ({0}: {1}; {2}, Zeile {3}). Es läuft weiter, aber was Sie zuletzt getan haben, ist vielleicht nicht getan. Speichern Sie Ihr Projekt, und melden Sie diese Zeile.</translation>
+    </message>
+</context>
+<context>
     <name>ExportDialog</name>
     <message>
         <source>Export mission files</source>
