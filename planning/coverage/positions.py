@@ -94,9 +94,8 @@ def sobol(n: int, rng: np.random.Generator) -> Array:
     L2-discrepancy for anchored boxes", 1998). SciPy has the same, in a module that takes a second to load.
     """
     places = np.arange(SOBOL_BITS - 1, -1, -1, dtype=np.uint32)
-    bits = (
-        sobol_directions()[..., None] >> places
-    ) & 1  # axis, bit of the number, bit of the coordinate from the highest
+    # By axis, bit of the number, and bit of the coordinate, from the highest.
+    bits = (sobol_directions()[..., None] >> places) & 1
     mixed = np.tril(rng.integers(0, 2, (3, SOBOL_BITS, SOBOL_BITS)), -1) + np.eye(SOBOL_BITS, dtype=np.int64)
     scrambled = (bits @ mixed.transpose(0, 2, 1) & 1) @ (np.int64(1) << places.astype(np.int64))
     points = np.tile(rng.integers(0, 1 << SOBOL_BITS, 3), (n, 1))
