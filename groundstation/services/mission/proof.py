@@ -6,6 +6,8 @@ mission, so that anybody can run it on what will be flown.
 
 from __future__ import annotations
 
+import hashlib
+import pickle
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -112,7 +114,7 @@ def proved_as_saved(
     """
     with TemporaryDirectory(prefix="reflight-") as name:
         site_path, plan_path = _write_open(plan, site_model, Path(name), "")
-        write_plan_proof(plan_path, site_path, site_model, _reachability(plan, site_model, monitor), monitor)
+        write_atomically(proof_path(plan_path), _proof_of_open(plan, site_model, site_path, plan_path, None, monitor))
         monitor.report(say("checking the proof"), 0, 1)
         return proof_finding(verified(site_path, plan_path, proof_path(plan_path)))
 
@@ -152,12 +154,36 @@ def open_mission_proof(
     folder, first = mission.parent, mission.name
     with TemporaryDirectory(prefix="reflight-") as name:
         site_path, plan_path = _write_open(plan, site_model, Path(name), f"{first}.")
-        written, reached = read_input_file(plan_path, JSON_FILE), _reachability(plan, site_model, monitor)
-        proof = proof_of(
-            site_path, plan_path, written, site_model, reached, monitor=monitor, return_height_m=return_height_m
-        )
+        proof = _proof_of_open(plan, site_model, site_path, plan_path, return_height_m, monitor)
         beside = {folder / path.name: path.read_bytes() for path in sorted(Path(name).iterdir())}
     return _with_verifiers(folder, first, proof, beside, folder / site_path.name, folder / plan_path.name)
+
+
+_last_known: dict[str, dict[str, Any]] = {}
+"""In a process of the window: the last proof of an open plan, by what its site and its views are. A check, and each
+export, ask for the same one, of which nearly all is said of these."""
+
+
+def _proof_of_open(
+    plan: Plan, site_model: SiteModel, site_path: Path, plan_path: Path, return_height_m: float | None, monitor: Monitor
+) -> bytes:
+    """The proof of an open plan that was written to these files, with what an earlier one says of the same views."""
+    views = (site_model, plan.viewpoints, plan.camera, plan.constraints, plan.aircraft, plan.seed)
+    key = hashlib.sha256(pickle.dumps(views)).hexdigest()
+    known, written = _last_known.get(key), read_input_file(plan_path, JSON_FILE)
+    reached = _reachability(plan, site_model, monitor) if known is None else None
+    proof = proof_of(
+        *(site_path, plan_path, written, site_model, reached),
+        known=known,
+        return_height_m=return_height_m,
+        monitor=monitor,
+    )
+    if known is None:
+        content = parse_json(proof, plan_path)
+        _last_known.clear()
+        if "seen" in content:
+            _last_known[key] = content
+    return proof
 
 
 def _reachability(plan: Plan, site_model: SiteModel, monitor: Monitor) -> Reachability | None:

@@ -1,11 +1,13 @@
 """Exports and imports of plans in memory: what is said first, what is written, what is refused."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from groundstation.services.mission import files as mission_files
+from groundstation.services.mission import proof as proofs
 from groundstation.services.mission.files import (
     export_paths,
     in_order_of_sorties,
@@ -21,6 +23,7 @@ from missions.formats.registry import FORMATS
 from missions.mission.export_choices import FileFormat, HeightReference, LinkLoss
 from planning.base.errors import InputError, OperationCancelled
 from planning.base.findings import Severity
+from planning.coverage.reachability import find_reachable
 from planning.planner import plan_flight
 from planning.proof.reflight_verify import jobs_of
 from planning.request import PlanRequest
@@ -179,3 +182,31 @@ def test_formats_that_the_verifier_does_not_read_get_no_proof(planned, tmp_path)
     paths, found = write_proved_export(prepared, model, FileFormat.KML, tmp_path / "out.kml", at_once)
     assert found is None
     assert list(tmp_path.iterdir()) == [*paths]
+
+
+@pytest.mark.long
+def test_what_a_proof_says_of_views_is_found_out_once_and_again_for_other_views(planned, tmp_path, monkeypatch):
+    plan, model = planned
+    found = []
+
+    def counted(*arguments, **named):
+        found.append(arguments)
+        return find_reachable(*arguments, **named)
+
+    monkeypatch.setattr(proofs, "find_reachable", counted)
+    monkeypatch.setattr(proofs, "_last_known", {})
+    proved = proofs.proved_as_saved(plan, model)
+    assert proved.severity is Severity.OK, proved.message
+    for name, heights in (("one.kmz", None), ("other.kmz", 30.0)):
+        (tmp_path / name).mkdir()
+        prepared = prepare_export(plan, model, FileFormat.DJI_KMZ, ExportOptions(rth_height_m=heights))
+        paths, said = write_proved_export(prepared, model, FileFormat.DJI_KMZ, tmp_path / name / name, at_once)
+        assert len(paths) == 1
+        assert PROVED in said.message
+    assert len(found) == 1
+    other, whole = replace(plan, viewpoints=plan.viewpoints[::-1]), replace(model, site=replace(model.site, name="b"))
+    proofs.proved_as_saved(other, model)
+    proofs.proved_as_saved(other, model)
+    assert len(found) == 2
+    proofs.proved_as_saved(other, whole)
+    assert len(found) == 3
