@@ -446,7 +446,7 @@ def test_a_model_after_photos_tells_of_further_ones_what_the_model_of_all_tells(
 
 @pytest.mark.long
 def test_photos_that_are_there_count_in_the_worth_of_a_plan():
-    request = PlanRequest(n_views=6, time_budget_s=2.0)
+    request = PlanRequest(n_views=6, time_budget_s=30.0)
     site_model, ready = SCENES["single-panel"](), prepared()
     photos = take(candidates(), np.arange(40))
     first = plan_flight(site_model, request, prepared=ready).plan.worth
