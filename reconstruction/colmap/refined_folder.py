@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.errors import InputError
+from planning.base.files import read_input_file
 from planning.base.findings import Finding, Severity
 from planning.base.json_file import expect_format, part_folder, read_json, to_record, write_atomically
 from planning.base.messages import say
@@ -26,6 +27,7 @@ from reconstruction.colmap.folder import read_model, write_model
 from reconstruction.colmap.georeference import Similarity, posed_photos, position_covariance
 from reconstruction.colmap.pycolmap_run import RefineParameters
 from reconstruction.colmap.refine import Refinement
+from reconstruction.photos.decode import PICTURE_FILE
 
 # Which refined poses are believed: compared, photo by photo, with what the photos say of themselves.
 #
@@ -266,8 +268,8 @@ def fingerprint(photos: Sequence[PosedPhoto]) -> str:
             raise InputError(say("cannot be read any more ({})", error.strerror or error, place=photo.path)) from error
         place = np.round(photo.pose.position_enu_m, LENGTH_DECIMALS) + 0.0  # no negative zero
         turn = np.round(photo.pose.cam_from_enu, TURN_DECIMALS) + 0.0
-        mask = () if photo.mask is None else (photo.mask.name, hashlib.sha256(photo.mask.read_bytes()).hexdigest())
-        said = (photo.name, n_bytes, place.tolist(), turn.tolist(), photo.intrinsics, *mask)
+        masks = [] if photo.mask is None else [hashlib.sha256(read_input_file(photo.mask, PICTURE_FILE)).hexdigest()]
+        said = (photo.name, n_bytes, place.tolist(), turn.tolist(), photo.intrinsics, *masks)
         digest.update(repr(said).encode())
     return digest.hexdigest()
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
@@ -79,6 +80,14 @@ def test_other_photos_and_other_poses_have_another_fingerprint(flight):
     assert fingerprint(stated[1:]) != own
     moved = replace(stated[0], pose=replace(stated[0].pose, position_enu_m=stated[0].pose.position_enu_m + 0.001))
     assert fingerprint([moved, *stated[1:]]) != own
+    mask = stated[0].path.with_suffix(".png")
+    drawn = []
+    for value in (255, 0, 255):
+        cv2.imwrite(str(mask), np.full((2, 2), value, np.uint8))
+        drawn.append(fingerprint([replace(stated[0], mask=mask), *stated[1:]]))
+    assert drawn[0] == drawn[2]
+    assert len({own, *drawn}) == 3
+    mask.unlink()
     stated[0].path.write_bytes(b"another picture")
     assert fingerprint(stated) != own
     stated[0].path.unlink()
