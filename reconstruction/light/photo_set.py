@@ -98,6 +98,11 @@ class PhotoSet:
     exposure: float
     own_exposures: Mapping[str, float]
 
+    @property
+    def has_panels(self) -> bool:
+        """Whether it is of panels; one for plain splats is of none."""
+        return len(self.panels.corners_enu_m) > 0
+
     def named(self, names: Collection[str]) -> tuple[PosedPhoto, ...]:
         """Those of its photos that are named."""
         return tuple(photo for photo in self.photos if photo.name in names)

@@ -12,7 +12,7 @@ import inspect
 import sys
 import traceback
 from collections.abc import Callable
-from functools import update_wrapper
+from functools import cache, update_wrapper
 from pathlib import Path
 from types import CodeType, FunctionType, TracebackType
 from typing import TYPE_CHECKING, Any
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 OBJECTS_SINCE = (3, 12)
 """Version of Python from which on errors are objects from the first."""
-
-OVERRIDDEN = "_override_"
 
 
 def make_errors_objects() -> None:
@@ -52,13 +50,18 @@ def _wrap_overrides(made: type) -> None:
 
 def catching(function: Callable[..., Any]) -> Callable[..., Any]:
     """A function that catches what another one raises, and raises it again. PySide counts its parameters: they stay."""
-    taken, given = _parameters(function.__code__)
-    scope: dict[str, Any] = {OVERRIDDEN: function}
-    lines = (f"def caught({taken}):", " try:", f"  return {OVERRIDDEN}({given})", " except BaseException:", "  raise")
-    exec("\n".join(lines), scope)
+    scope: dict[str, Any] = {"_called": function}
+    exec(_program(*_parameters(function.__code__)), scope)
     caught = scope["caught"]
     caught.__defaults__, caught.__kwdefaults__ = function.__defaults__, function.__kwdefaults__
     return update_wrapper(caught, function)
+
+
+@cache
+def _program(taken: str, given: str) -> CodeType:
+    """Of the function that catches; most methods have the parameters of many others."""
+    lines = (f"def caught({taken}):", " try:", f"  return _called({given})", " except BaseException:", "  raise")
+    return compile("\n".join(lines), "<override>", "exec")
 
 
 def _parameters(code: CodeType) -> tuple[str, str]:

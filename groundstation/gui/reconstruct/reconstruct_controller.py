@@ -160,7 +160,7 @@ class FolderController(QObject):
 
     def _read(self, card: DataSetCard) -> None:
         self._is_reading, self.card = False, card
-        if not len(card.source.panels.corners_enu_m) and method_named(self.choice.method).knows_panels:
+        if not card.source.has_panels and method_named(self.choice.method).knows_panels:
             self.choice = replace(self.choice, method=PLAIN_METHOD)
         noted = noted_data_set(self.out)
         if not self.standing.is_interrupted or (noted is not None and real_path(noted) != real_path(card.folder)):

@@ -437,7 +437,7 @@ class ReconstructPage(GradualTab):
 
     def _has_facades(self) -> bool:
         card = self.controller.card
-        return card is None or len(card.source.panels.corners_enu_m) > 0
+        return card is None or card.source.has_panels
 
     def _quality_words(self) -> str:
         training = self.controller.training

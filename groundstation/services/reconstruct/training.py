@@ -304,7 +304,7 @@ def train_tradeoff(
         base = replace(base, score_every_s=min(base.score_every_s, base.time_limit_s / POINTS))
     settings = settings_of(base, knobs)
     check_finished(dataset)
-    has_panels = len(read_photo_set(dataset).panels.corners_enu_m) > 0
-    title = say("{}: facades of unseen views", dataset.name) if has_panels else say("{}: unseen views", dataset.name)
+    of_facades = read_photo_set(dataset).has_panels
+    title = say("{}: facades of unseen views", dataset.name) if of_facades else say("{}: unseen views", dataset.name)
     subject: Subject[tuple[Trial, ...]] = Subject("train", ERROR_AXIS, trial_rows, lambda _: title, trial_panels)
     return compare(subject, out, lambda _: run_settings(dataset, settings, monitor))

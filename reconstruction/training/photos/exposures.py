@@ -386,7 +386,7 @@ def _logarithms(source: PhotoSet, photo: PosedPhoto, points_enu_m: Array, caster
     is_told = ((values > DARKEST) & (values < BRIGHTEST)).all(axis=1)
     if photo.mask is not None:
         is_told &= cv2.resize(mask_of(photo).astype(np.float32), size, interpolation=cv2.INTER_AREA)[y, x] > WHOLE
-    if len(source.panels.corners_enu_m):
+    if source.has_panels:
         panels = source.panel_numbers(photo)
         across, down = pixels[:, 0].astype(np.int64), pixels[:, 1].astype(np.int64)
         is_told &= panels[np.clip(down, 0, lens.height_px - 1), np.clip(across, 0, lens.width_px - 1)] < 0
