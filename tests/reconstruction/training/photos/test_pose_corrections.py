@@ -23,6 +23,7 @@ from reconstruction.training.photos.poses import (
     moved_view,
     one_after_other,
     pulled,
+    wander_px,
 )
 from tests.reconstruction.light.synthetic_folder import cameras, corners_of
 
@@ -177,7 +178,7 @@ def test_the_shift_is_that_of_what_photos_show(tmp_path):
     for photo, there, distance in zip(photos, moved(photos, poses.moves()), poses.distances_m, strict=True):
         point = (photo.pose.position_enu_m + float(distance) * photo.pose.cam_from_enu[2])[None]
         found.append(float(np.linalg.norm(there.pixels(point) - photo.pixels(point))))
-    poses.settle("on", 1.0)
+    poses.settle("on", 1.0, 0.0)
     assert float(poses.shift_px) == pytest.approx(float(np.median(found)), rel=0.15)
 
 
@@ -187,9 +188,9 @@ def test_photos_that_hardly_move_are_put_back_and_others_go_on(tmp_path):
     for px, is_on in ((little, False), (much, True)):
         poses = corrected(photos, [[px, 0.0, 0.0], [0.0, 0.0, px], [px, 0.0, 0.0]])
         assert poses.are_learned("auto")
-        poses.settle("auto", TRIED - 0.01)
+        poses.settle("auto", TRIED - 0.01, 0.0)
         assert poses.pixels.any()
-        poses.settle("auto", TRIED)
+        poses.settle("auto", TRIED, 0.0)
         assert poses.are_learned("auto") is is_on
         assert bool(poses.pixels.any()) is is_on
         decision = poses.decision("auto", 100.0)
@@ -197,10 +198,20 @@ def test_photos_that_hardly_move_are_put_back_and_others_go_on(tmp_path):
         assert decision.cost_s == pytest.approx(4.0)
 
 
+@pytest.mark.parametrize(("looks", "is_on"), [(1, False), (100, True)])
+def test_photos_that_move_as_chance_would_move_them_are_put_back(tmp_path, looks, is_on):
+    photos = cameras(tmp_path, 3)
+    px = 2.0 * OwnPoses().tolerance
+    poses = corrected(photos, [[px, 0.0, 0.0], [0.0, 0.0, px], [px, 0.0, 0.0]])
+    poses.settle("auto", TRIED, wander_px(0.1, 3 * looks, 3))
+    assert poses.are_learned("auto") is is_on
+    assert bool(poses.pixels.any()) is is_on
+
+
 def test_the_user_decides_whatever_photos_do(tmp_path):
     photos = cameras(tmp_path, 2)
     poses = corrected(photos, [[0.1, 0.0, 0.0], [0.0, 0.0, 0.1]])
-    poses.settle("on", 1.0)
+    poses.settle("on", 1.0, 0.0)
     assert poses.are_learned("on")
     assert poses.pixels.any()
     assert poses.decision("on", 1.0).on
