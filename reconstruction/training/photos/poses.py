@@ -101,10 +101,10 @@ TRIED = 0.25
 """Share of the training after which it is decided whether poses go on being corrected."""
 
 WANDER = 11.0
-"""Steps of Adam that corrections of poses that are right wander, over the square root of the looks at each photo: with
-steps of 0.1 px 1.0 px after 1.2 looks, 0.7 after 2.6 (planar, 85 photos of 128 px; as far at 512 px). More looks make it
-0.9 after 5.3, which the tolerance is above: photos follow what the model does not show as yet. To correct right poses
-cost 2.7 dB (planar, 100 photos of 512 px, 10 minutes); poses off by 2 px are seen to be off by 1.8."""
+"""Steps of Adam that corrections of right poses wander, over the square root of the looks at each photo: with steps
+of 0.1 px 1.0 px after 1.2 looks and 0.7 after 2.6 (planar, 85 photos of 128 px; as far at 512 px). After 5.3 it is
+0.9 again, which the tolerance is above: photos follow what the model does not show as yet. To correct right poses
+cost 2.7 dB (planar, 100 photos of 512 px, 10 minutes); poses that are 2 px off are seen to be 1.8 off."""
 
 UNKNOWN = -1.0
 """Shift of photos that was not measured, or not yet."""

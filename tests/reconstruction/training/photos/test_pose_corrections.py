@@ -201,7 +201,7 @@ def test_photos_that_hardly_move_are_put_back_and_others_go_on(tmp_path):
 @pytest.mark.parametrize(("looks", "is_on"), [(1, False), (100, True)])
 def test_photos_that_move_as_chance_would_move_them_are_put_back(tmp_path, looks, is_on):
     photos = cameras(tmp_path, 3)
-    px = 2.0 * OwnPoses().tolerance
+    px = 1.2 * OwnPoses().tolerance
     poses = corrected(photos, [[px, 0.0, 0.0], [0.0, 0.0, px], [px, 0.0, 0.0]])
     poses.settle("auto", TRIED, wander_px(0.1, 3 * looks, 3))
     assert poses.are_learned("auto") is is_on
