@@ -76,7 +76,7 @@ class OwnPoses:
 
     name: str = say("pose of each photo")
     unit: str = "px"
-    tolerance: float = 1.2
+    tolerance: float = 1.0
 
     def assess(self, scene: PoseShift) -> Assessment:
         """How far photos were moved while all were corrected."""
