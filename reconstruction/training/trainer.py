@@ -52,7 +52,7 @@ from reconstruction.training.losses import (
 from reconstruction.training.model.joint_model import Picture, SceneModel
 from reconstruction.training.photos.exposures import Exposures
 from reconstruction.training.photos.photo_stream import PhotoStream, Sample
-from reconstruction.training.photos.poses import PoseCorrections, wander_px
+from reconstruction.training.photos.poses import PoseCorrections
 from reconstruction.training.photos.transients import Transients
 from reconstruction.training.ranks import ALONE, Ranks
 from reconstruction.training.timer import Timer
@@ -480,8 +480,7 @@ class Trainer(TrainingState):
         cool_down = self._cool_down
         falling = self.progress if cool_down is None else cool_down.progress_of_rates(at.spent_s)
         set_rates(self.optimiser, config.rates, at.step, max(self.progress, falling), at.factor)
-        chance_px = wander_px(config.rates.poses, at.step * self._ranks.n, len(self.photos.photos))
-        self.poses.settle(config.own_poses, self.progress, chance_px)
+        self.poses.settle(config.own_poses, self.progress, at.step * self._ranks.n, config.rates.poses)
         move = self.poses(sample.number) if self.poses.are_learned(config.own_poses) else None
         glass = self.model.light
         more = None if glass is None else glass.regulariser(config.reflections, at.step)

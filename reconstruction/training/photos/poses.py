@@ -116,11 +116,6 @@ COST = 0.04
 """Share of a training's time that corrections take."""
 
 
-def wander_px(rate_px: float, n_looks: int, n_photos: int) -> float:
-    """How far corrections of right poses move photos, in the median, once they were looked at so often."""
-    return WANDER * rate_px * math.sqrt(n_photos / max(n_looks, 1))
-
-
 class PoseCorrections(nn.Module):
     """A correction of each photo's pose, 0 at first.
 
@@ -175,15 +170,17 @@ class PoseCorrections(nn.Module):
         return setting == "on" or (setting == "auto" and not 0.0 <= float(self.shift_px) <= OwnPoses().tolerance)
 
     @torch.no_grad()
-    def settle(self, setting: EffectSetting, progress: float, wandered_px: float) -> None:
+    def settle(self, setting: EffectSetting, progress: float, n_looks: int, rate_px: float) -> None:
         """Measure how far photos were moved, once; with `auto`, take corrections back that are not worth it.
 
         Parameters
         ----------
         progress
             Of the training, 0 to 1: nothing is measured before `TRIED`.
-        wandered_px
-            That chance alone moves them, see `wander_px`; what is measured is what goes beyond.
+        n_looks
+            At all photos together, so far.
+        rate_px
+            Of a step of Adam; what chance alone moves photos by is taken off, see `WANDER`.
         """
         if progress < TRIED or setting == "off" or float(self.shift_px) != UNKNOWN:
             return
@@ -191,7 +188,8 @@ class PoseCorrections(nn.Module):
         seen = shift / self.distances_m[:, None] + torch.linalg.cross(turn, self.axes)
         across = seen - (seen * self.axes).sum(dim=1, keepdim=True) * self.axes
         moved_px = float((self.focal_px * across.norm(dim=1)).median())
-        self.shift_px.fill_(math.sqrt(max(moved_px**2 - wandered_px**2, 0.0)))
+        chance_px = WANDER * rate_px * math.sqrt(len(self.pixels) / max(n_looks, 1))
+        self.shift_px.fill_(math.sqrt(max(moved_px**2 - chance_px**2, 0.0)))
         if not self.are_learned(setting):
             self.pixels.zero_()
 

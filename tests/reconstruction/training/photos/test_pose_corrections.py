@@ -23,7 +23,6 @@ from reconstruction.training.photos.poses import (
     moved_view,
     one_after_other,
     pulled,
-    wander_px,
 )
 from tests.reconstruction.light.synthetic_folder import cameras, corners_of
 
@@ -178,7 +177,7 @@ def test_the_shift_is_that_of_what_photos_show(tmp_path):
     for photo, there, distance in zip(photos, moved(photos, poses.moves()), poses.distances_m, strict=True):
         point = (photo.pose.position_enu_m + float(distance) * photo.pose.cam_from_enu[2])[None]
         found.append(float(np.linalg.norm(there.pixels(point) - photo.pixels(point))))
-    poses.settle("on", 1.0, 0.0)
+    poses.settle("on", 1.0, 1, 0.0)
     assert float(poses.shift_px) == pytest.approx(float(np.median(found)), rel=0.15)
 
 
@@ -188,9 +187,9 @@ def test_photos_that_hardly_move_are_put_back_and_others_go_on(tmp_path):
     for px, is_on in ((little, False), (much, True)):
         poses = corrected(photos, [[px, 0.0, 0.0], [0.0, 0.0, px], [px, 0.0, 0.0]])
         assert poses.are_learned("auto")
-        poses.settle("auto", TRIED - 0.01, 0.0)
+        poses.settle("auto", TRIED - 0.01, 1, 0.0)
         assert poses.pixels.any()
-        poses.settle("auto", TRIED, 0.0)
+        poses.settle("auto", TRIED, 1, 0.0)
         assert poses.are_learned("auto") is is_on
         assert bool(poses.pixels.any()) is is_on
         decision = poses.decision("auto", 100.0)
@@ -203,7 +202,7 @@ def test_photos_that_move_as_chance_would_move_them_are_put_back(tmp_path, looks
     photos = cameras(tmp_path, 3)
     px = 1.2 * OwnPoses().tolerance
     poses = corrected(photos, [[px, 0.0, 0.0], [0.0, 0.0, px], [px, 0.0, 0.0]])
-    poses.settle("auto", TRIED, wander_px(0.1, 3 * looks, 3))
+    poses.settle("auto", TRIED, 3 * looks, 0.1)
     assert poses.are_learned("auto") is is_on
     assert bool(poses.pixels.any()) is is_on
 
@@ -211,7 +210,7 @@ def test_photos_that_move_as_chance_would_move_them_are_put_back(tmp_path, looks
 def test_the_user_decides_whatever_photos_do(tmp_path):
     photos = cameras(tmp_path, 2)
     poses = corrected(photos, [[0.1, 0.0, 0.0], [0.0, 0.0, 0.1]])
-    poses.settle("on", 1.0, 0.0)
+    poses.settle("on", 1.0, 1, 0.0)
     assert poses.are_learned("on")
     assert poses.pixels.any()
     assert poses.decision("on", 1.0).on
