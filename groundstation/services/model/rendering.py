@@ -55,7 +55,7 @@ def score_files(
     lpips_paths
         Weights for LPIPS; where none are named, those that `store_lpips_weights` has kept, if there are any.
     with_fitted_gain
-        Fit the exposure of each view, to see what is left where it alone was wrong.
+        Fit the exposure of each view's facade, to see what is left where it alone was wrong.
 
     Raises
     ------

@@ -19,6 +19,7 @@ from reconstruction.metrics.flip import flip_of_masks
 from reconstruction.metrics.image_metrics import PictureScore, Quality, mean_quality, score_picture
 from reconstruction.metrics.lpips import LpipsWeights, lpips_of_masks
 from reconstruction.splats.rasterising.raster_types import RasterSettings
+from reconstruction.training.model.joint_model import SceneModel
 from reconstruction.training.model.record import site_record
 from reconstruction.training.model.render import render_view
 from reconstruction.training.model.saved import TrainedModel
@@ -110,10 +111,17 @@ def quality_of(scores: Iterable[ViewScores]) -> Quality | None:
 
 
 @torch.no_grad()
-def _fitted(model: torch.nn.Module, sample: Sample, gain: float, settings: RasterSettings) -> float:
-    """Factor on a gain that brings the rendered light closest to the photo's."""
-    display = model(sample.view, gain, settings=settings).display.reshape(-1, 3)
-    truth = sample.display.reshape(-1, 3).float() / 255.0
+def _fitted(model: SceneModel, sample: Sample, gain: float, settings: RasterSettings) -> float:
+    """Factor on a gain that brings the rendered light of the facade, or of all where none is, closest to the photo's.
+
+    A bright street beside it would outweigh it: squares of linear light are compared.
+    """
+    facade, shown = sample.scored_pixels()
+    told = facade if facade.any() else shown
+    display = torch.from_numpy(render_view(model, sample.view, (), gain, settings).display)
+    truth = sample.display.float() / 255.0
+    pixels = ... if told is None else torch.from_numpy(told)
+    display, truth = display[pixels].reshape(-1, 3), truth[pixels].reshape(-1, 3)
     return float(fitted_gain(linear_from_display(display), linear_from_display(truth), truth))
 
 

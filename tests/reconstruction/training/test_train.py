@@ -1,7 +1,9 @@
 """A whole training: mirrored light is worth its name on views that were not learned from."""
 
+import shutil
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
@@ -55,3 +57,21 @@ def test_a_model_says_where_its_photos_were_found_to_be(data_set, setting):
     else:
         assert record.moves == ()
         assert not shifts.any()
+
+
+def test_what_stands_beside_a_facade_does_not_tell_its_exposure(data_set, tmp_path):
+    folder = tmp_path / "brighter"
+    shutil.copytree(data_set, folder)
+    trained = train_model(data_set, TrainConfig(method="2dgs", iterations=8, n_splats=100, max_splats=100))
+    names = trained.record.held_out
+    for name in names:
+        path = folder / "images" / name
+        photo = cv2.imread(str(path))
+        facade = cv2.imread(str(folder / "masks" / f"{name}.png"), cv2.IMREAD_GRAYSCALE) > 0
+        photo[~facade] = 200
+        cv2.imwrite(str(path), photo)
+    first, second = (score_views(trained, read_photo_set(each), names, gain="fitted") for each in (data_set, folder))
+    assert [each.facade.psnr_db for each in first] == pytest.approx([each.facade.psnr_db for each in second])
+    assert [each.whole.psnr_db for each in first] != pytest.approx([each.whole.psnr_db for each in second], abs=0.1)
+    plain = score_views(trained, read_photo_set(folder), names)
+    assert [each.facade.psnr_db for each in second] > [each.facade.psnr_db for each in plain]
