@@ -71,11 +71,11 @@ MORNING = QDateTime(QDate(2026, 6, 21), QTime(9, 0))
 FLY_SPEED_UP, FLY_PHOTOS = 30.0, 12
 """Of the simulated flight, and after how many photos it is broken off."""
 
-N_VIEWS, WIDTH_PX = 24, 192
+N_VIEWS, WIDTH_PX = 48, 256
 """Of the rendered photos that a model learns from."""
 
-MINUTES = 5.0
-"""Of the training, which is stopped before."""
+MINUTES = 8.0
+"""Of the training."""
 
 STEPS, MEASURED = 60, 4
 """Steps, and looks at the quality, after which the model can be seen for what it is."""
@@ -487,7 +487,6 @@ class _Tour(QObject):
         self._window.show_tab("reconstruct")
         rest()
         page().side.pause.click()
-        page().side.stop.click()
         self._wait_for(lambda: page().controller.phase is Phase.IDLE)
         page().pane.worst.click()
         page().details.setCurrentIndex(2)

@@ -73,6 +73,14 @@ class TrainingSnapshot:
     settings: RasterSettings
 
 
+Show = Callable[[SceneModel, RasterSettings], object]
+"""Of a model before its first step, and how it is to be drawn."""
+
+
+def unshown(model: SceneModel, settings: RasterSettings) -> None:
+    """Nobody looks."""
+
+
 @dataclass(slots=True, eq=False)
 class Callbacks:
     """Who looks on while a training runs.
@@ -91,6 +99,8 @@ class Callbacks:
         Called with a picture of the first held-out view whenever the quality is measured.
     visit
         Called after each step, and again and again while it is paused; its time counts as the training's.
+    show_before
+        Called with what there is to see before the first step: splats as they were placed, then as trials left them.
     """
 
     monitor: Monitor = QUIET
@@ -99,6 +109,7 @@ class Callbacks:
     trace: Trace | None = None
     preview: Callable[[Preview], None] | None = None
     visit: Callable[[TrainingSnapshot], None] | None = None
+    show_before: Show = unshown
 
 
 @torch.no_grad()

@@ -45,7 +45,7 @@ from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import NO_PANEL, Splats, splats_from_tensors, splats_to_tensors
 from reconstruction.splats.surfels import KnownScene, known_scene, model_origin, points_only, scene_of_points
-from reconstruction.training.callbacks import Callbacks, HeldOut
+from reconstruction.training.callbacks import Callbacks, HeldOut, Show, unshown
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.methods.shader import Shader, Surroundings
 from reconstruction.training.methods.shaders import converted_for_method, shader_of, with_primitive
@@ -375,6 +375,7 @@ def start_model(
     checkpoint: Path | None = None,
     interrupted: InterruptedLightStage | None = None,
     splats_path: Path | None = None,
+    show: Show = unshown,
 ) -> Start:
     """Place splats, learn the light that glass mirrors from its rays alone, and put both together.
 
@@ -388,6 +389,8 @@ def start_model(
         What it goes on from.
     splats_path
         PLY file of splats to start from; None for new ones.
+    show
+        See `Callbacks.show_before`.
 
     Raises
     ------
@@ -434,6 +437,8 @@ def start_model(
     else:
         splats, on_points = _placed_splats(source, learned, scene, origin, config, monitor)
         decisions += on_points
+    raster = replace(config.raster, threads=config.threads)
+    show(_joined(source, learned, splats, None, None, origin, config).eval(), raster)
     light: TrainedReflections | None = None
     shader: Shader | None = None
     is_told = False
@@ -446,7 +451,9 @@ def start_model(
         shader = shader_of(config, Surroundings(triangles))
         splats = converted_for_method(splats, config, shader)
     else:
-        first = _learned_light(source, learned, config, splats, monitor, watch, checkpoint, interrupted, decisions)
+        first = _learned_light(
+            source, learned, config, splats, monitor, watch, checkpoint, interrupted, decisions, show
+        )
         light, splats, decisions, is_told = first.light, first.splats, first.decisions, first.is_in_splats
     moves = learned_moves(None if light is None else light.panels.light, len(learned))
     cameras = np.array([photo.pose.position_enu_m for photo in moved(learned, moves)])
@@ -581,6 +588,7 @@ def _is_worth(
     config: TrainConfig,
     watch: Timer,
     monitor: Monitor,
+    show: Show,
 ) -> _Worth:
     """Train with light apart, of one model or several, and without for a short while; score all on unseen photos.
 
@@ -615,6 +623,7 @@ def _is_worth(
     unsure_db = standard_error(scores[best] - scores[ALONE_MODEL])
     worth = decide(SeparateLight(), (means[best], means[ALONE_MODEL], unsure_db, tried.trials.seconds))
     better = trials[best if worth.on else ALONE_MODEL]
+    show(better.trainer.model.eval(), replace(config.raster, threads=config.threads))
     kept = splats_from_tensors(splats_to_tensors(better.trainer.model.splats), str(source.folder))
     return _Worth(worth, best if worth.on else ALONE_MODEL, means, kept)
 
@@ -705,6 +714,7 @@ def _learned_light(
     checkpoint: Path | None,
     interrupted: InterruptedLightStage | None,
     before: tuple[Decision, ...],
+    show: Show,
 ) -> _LightLearned:
     """The light, or harmonics where splats alone tell more, after what was decided `before`."""
     settings = replace(
@@ -738,7 +748,7 @@ def _learned_light(
                 decisions = (*decisions, decide(SeparateLight(), None, "on"))
             elif tried is not None and name != ALONE_MODEL and decisions[0].size < CLEAR_DB:
                 names = (name, *contenders(tried.trials, name))
-                worth = _is_worth(source, learned, splats, tried, names, config, watch, monitor)
+                worth = _is_worth(source, learned, splats, tried, names, config, watch, monitor, show)
                 name, splats = worth.name, worth.splats
                 if len(names) > 1:
                     decisions = (decisions[0], with_splats(worth.scores_db, tried.trials.seconds))

@@ -121,7 +121,11 @@ def train_model(
         return _joined_later(folder, checkpoint, watching, ranks, watch)
     source = read_photo_set(folder)
     with torch_threads(config.threads):
-        start = start_model(source, config, watching.monitor, watch, checkpoint, splats_path=splats_path)
+        start = start_model(
+            *(source, config, watching.monitor, watch, checkpoint),
+            splats_path=splats_path,
+            show=watching.show_before,
+        )
     return _started(source, start, watching, checkpoint, ranks, watch)
 
 
@@ -214,7 +218,9 @@ def resume_model(
     watch.before_s += interrupted.spent_s
     source = read_photo_set(folder)
     with torch_threads(config.threads):
-        start = start_model(source, config, watching.monitor, watch, checkpoint, interrupted)
+        start = start_model(
+            *(source, config, watching.monitor, watch, checkpoint, interrupted), show=watching.show_before
+        )
     return _started(source, start, watching, checkpoint, ranks, watch)
 
 

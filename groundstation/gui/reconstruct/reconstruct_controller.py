@@ -31,6 +31,7 @@ from groundstation.services.reconstruct.messages import (
     Chosen,
     Devices,
     Ended,
+    FirstLook,
     Measured,
     ModelProcess,
     Pause,
@@ -224,6 +225,8 @@ class ActiveTraining:
     ----------
     dataset, out
         Folders of what is learned from, and of the model.
+    n_first_looks
+        Models that there were to look at before the first step.
     quality
         PSNR, dB, of unseen views by seconds.
     terms
@@ -233,6 +236,7 @@ class ActiveTraining:
     dataset: Path = field(default_factory=Path)
     out: Path = field(default_factory=Path)
     stage: Stage | None = None
+    n_first_looks: int = 0
     stepped: Stepped | None = None
     ended: Ended | None = None
     quality: ThinCurve = field(default_factory=ThinCurve)
@@ -241,6 +245,8 @@ class ActiveTraining:
     @property
     def has_model(self) -> bool:
         """Whether there is a model of it to look at."""
+        if self.ended is None and self.n_first_looks > 0:
+            return True
         return self.stepped is not None or (self.ended is not None and self.ended.outcome == "done")
 
     def take_step(self, stepped: Stepped) -> None:
@@ -416,6 +422,9 @@ class ReconstructController(FolderController):
             case Stage():
                 self.training.stage = message
                 self.progressed.emit()
+            case FirstLook():
+                self.training.n_first_looks += 1
+                self.progressed.emit()
             case Stepped():
                 self._take_step(message)
             case Measured(seconds, psnr_db):
@@ -485,7 +494,7 @@ class ReconstructController(FolderController):
 
     def _take_loss(self, lost: ProcessEnded) -> None:
         was, self.phase, self.is_paused = self.phase, Phase.IDLE, False
-        self.training.stepped, self.cuda = None, None
+        self.training.n_first_looks, self.training.stepped, self.cuda = 0, None, None
         if was in BUSY:
             self.training.ended = Ended("failed")
         self.check_output_folder()

@@ -287,7 +287,7 @@ class ViewPane(QWidget):
         self._problem = ""
         self._answer: ViewAnswer | None = None
         self._units = UnitSystem.METRIC
-        self._is_at_home, self._has_model = True, False
+        self._is_at_home, self._has_model, self._n_first_looks = True, False, 0
         self._judged = QTimer(self)
         self._judged.setSingleShot(True)
         self._judged.setInterval(ERRORS_MS)
@@ -353,9 +353,13 @@ class ViewPane(QWidget):
 
     def follow_training(self) -> None:
         """The training has gone on."""
+        n_first_looks = self._controller.training.n_first_looks
         if self._has_model != self._controller.has_model:
             self.show_training()
-        is_learning = self._controller.phase in (Phase.PREPARING, Phase.TRAINING, Phase.COOLING_DOWN)
+        elif self._n_first_looks != n_first_looks:
+            self.pictures_in_view.look_anew()
+        self._n_first_looks = n_first_looks
+        is_learning = self._controller.phase in (Phase.TRAINING, Phase.COOLING_DOWN)
         self.pictures_in_view.set_learning(is_learning and not self._controller.is_paused)
 
     # How it is put together
@@ -485,6 +489,8 @@ class ViewPane(QWidget):
         stepped = self._controller.training.stepped
         if subject.kind == "training" and stepped is not None:
             words = self.tr("step {0}").format(stepped.step)
+        elif subject.kind == "training" and self._controller.is_busy:
+            words = self.tr("before the first step")
         if self._scale is None or self.bar.value()[1] == PICTURE:
             return words
         low, high = self._scale

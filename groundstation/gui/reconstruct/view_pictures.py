@@ -170,7 +170,7 @@ class ViewPictures(QObject):
             self._again.start(int(1000.0 * AGAIN_S))
         elif was_learning and not is_learning:
             self._again.stop()
-            self._look_anew()
+            self.look_anew()
 
     def forget(self) -> None:
         """What is on its way will not come: the process has ended."""
@@ -201,12 +201,13 @@ class ViewPictures(QObject):
     def _look_again(self) -> None:
         if not self._is_learning:
             return
-        self._look_anew()
+        self.look_anew()
         pixels = self._fine_px()
         took_s = max([0.0, *(pace.seconds_of(pixels) for _, pace in self._paces.values())])
         self._again.start(int(1000.0 * max(AGAIN_S, AGAIN_TIMES * took_s)))
 
-    def _look_anew(self) -> None:
+    def look_anew(self) -> None:
+        """Look at the model in training once more."""
         if self._view is None:
             return
         for place, subject in (("left", self._view.left), ("right", self._view.right)):

@@ -23444,6 +23444,10 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Schritt {0}</translation>
     </message>
     <message>
+        <source>before the first step</source>
+        <translation>vor dem ersten Schritt</translation>
+    </message>
+    <message>
         <source>{0}: violet {1}, yellow {2}</source>
         <translation>{0}: violett {1}, gelb {2}</translation>
     </message>

@@ -261,6 +261,11 @@ class Stage:
 
 
 @dataclass(frozen=True, slots=True)
+class FirstLook:
+    """There is a model to look at before the first step, or another one that shows more."""
+
+
+@dataclass(frozen=True, slots=True)
 class Stepped:
     """Where a training is; `terms` of the last step's loss."""
 

@@ -445,6 +445,10 @@ class RenderQueue:
         self._sources.clear()
         self._photos.clear()
 
+    def keep_placed(self, model: SceneModel, settings: RasterSettings) -> None:
+        """The model that a training begins with."""
+        self._training = ShownModel(model, {}, settings, model, (), ())
+
     def keep_snapshot(self, visit: TrainingSnapshot) -> None:
         """The model in training, as it is now."""
         learned, moves = visit.record.get("learned", ()), visit.record.get("moves", ())

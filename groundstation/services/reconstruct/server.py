@@ -21,6 +21,7 @@ from groundstation.services.reconstruct.messages import (
     Chosen,
     Devices,
     Ended,
+    FirstLook,
     Measured,
     Organise,
     Pause,
@@ -39,7 +40,9 @@ from planning.base.errors import GroundStationError, OperationCancelled
 from planning.base.progress import Trace, hear_compiling
 
 if TYPE_CHECKING:
+    from reconstruction.splats.rasterising.raster_types import RasterSettings
     from reconstruction.training.callbacks import TrainingSnapshot
+    from reconstruction.training.model.joint_model import SceneModel
 
 REPORT_S = 0.1
 """Shortest time between two reports of one stage, and of two steps."""
@@ -154,6 +157,7 @@ class _Server:
                 trace=Trace(),
                 monitor=self,
                 visit=self._visit,
+                show_before=self._show_before,
             )
         except OperationCancelled:
             self._tell(Ended("kept"))
@@ -197,6 +201,10 @@ class _Server:
             self._tell(Stage(stage, done, total))
         if not self._is_joint:
             self._look()
+
+    def _show_before(self, model: SceneModel, settings: RasterSettings) -> None:
+        self._render_queue.keep_placed(model, settings)
+        self._tell(FirstLook())
 
     def _visit(self, visit: TrainingSnapshot) -> None:
         self._render_queue.keep_snapshot(visit)

@@ -20,7 +20,7 @@ from reconstruction.training.parameters import DEFAULT_PRESET, TrainRequest
 if TYPE_CHECKING:
     from planning.base.effects import Decision
     from reconstruction.tradeoff.train_tradeoff import Trial
-    from reconstruction.training.callbacks import Callbacks, Preview, TrainingSnapshot
+    from reconstruction.training.callbacks import Callbacks, Preview, Show, TrainingSnapshot
     from reconstruction.training.config import TrainConfig
     from reconstruction.training.model.saved import TrainedModel
     from reconstruction.training.ranks import Ranks
@@ -83,6 +83,7 @@ def train_files(
     monitor: Monitor = QUIET,
     begun_s: float | None = None,
     visit: Callable[[TrainingSnapshot], None] | None = None,
+    show_before: Show | None = None,
 ) -> TrainedFiles:
     """Train a model of a data set folder into a folder; or go on with the training that was interrupted there.
 
@@ -93,7 +94,7 @@ def train_files(
     ----------
     begun_s
         What `time.perf_counter` said when the time limit began to count; None for now.
-    visit
+    visit, show_before
         See `Callbacks`.
 
     Raises
@@ -107,7 +108,7 @@ def train_files(
     """
     # Before the libraries are loaded, which takes seconds.
     begun_s = time.perf_counter() if begun_s is None else begun_s
-    from reconstruction.training.callbacks import Callbacks
+    from reconstruction.training.callbacks import Callbacks, unshown
     from reconstruction.training.model.saved import save_model
     from reconstruction.training.parameters import CHECKPOINT
     from reconstruction.training.ranks import ranks_of_environment
@@ -116,7 +117,9 @@ def train_files(
     watch = Timer(begun_s=begun_s)
     with ranks_of_environment() as ranks:
         waiting = _Waiting(monitor, pause, watch)
-        watching = Callbacks(waiting, stop, pause, trace, preview if ranks.is_first else None, visit)
+        watching = Callbacks(
+            waiting, stop, pause, trace, preview if ranks.is_first else None, visit, show_before or unshown
+        )
         trained = _trained(dataset, out, request, resume, watching, ranks, watch)
         if ranks.is_first:
             save_model(trained, out)

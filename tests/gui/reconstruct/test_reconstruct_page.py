@@ -16,6 +16,7 @@ from groundstation.services.reconstruct.messages import (
     Chosen,
     Devices,
     Ended,
+    FirstLook,
     Measured,
     Pause,
     PhotoError,
@@ -133,6 +134,23 @@ def test_a_training_goes_from_preparing_to_its_end_and_buttons_follow(chosen, tm
     # It can be looked at all the same.
     assert chosen.pane.bar.value()[0] == ""
     assert chosen.pane.bar.model.itemText(0) == "trained last"
+
+
+def test_what_a_training_begins_with_is_shown_before_its_first_step_each_time_there_is_more(chosen):
+    begin(chosen)
+    take(chosen, Stage("learning reflections", 0, 80))
+    assert TRAINING not in [look.subject for look in chosen.told.of(ViewRequest)]
+    for n_looks in (1, 2):
+        take(chosen, FirstLook())
+        looks = [look for look in chosen.told.of(ViewRequest) if look.subject == TRAINING]
+        assert len(looks) == n_looks
+        answer = ViewAnswer(looks[-1], np.zeros((12, 16, 3), np.uint8), seconds=0.1)
+        chosen.controller.viewAnswered.emit(answer)
+    assert chosen.pane.view._words[0] == "before the first step"
+    assert chosen.pane.bar.model.itemText(0) == "in training"
+    assert not chosen.pane.pictures_in_view._again.isActive(), "nothing changes by itself yet"
+    take(chosen, Ended("kept"))
+    assert not chosen.controller.has_model
 
 
 def test_stopped_before_there_is_a_model_it_says_when_it_stops(chosen):

@@ -14,9 +14,12 @@ from reconstruction.dataset.records import coloured_ply
 from reconstruction.light.choose_light import chosen
 from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.photo_set import read_photo_set
+from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.splats import NO_PANEL
 from reconstruction.training import start as start_module
+from reconstruction.training.callbacks import unshown
 from reconstruction.training.config import TrainConfig
+from reconstruction.training.model.render import render_view
 from reconstruction.training.photos.decoded_photo import usual_reduce
 from reconstruction.training.start import SeparateLight, start_model
 from tests.reconstruction.light.synthetic_folder import LENS, far
@@ -99,14 +102,29 @@ def of_other_light(folder, n):
         shutil.rmtree(one)
 
 
-def light_apart(folder, config, monkeypatch, others=()):
+def light_apart(folder, config, monkeypatch, others=(), show=unshown):
     """The decision, and the model of light; it is asked whatever rays alone say, of the environment map and others."""
     monkeypatch.setattr(start_module, "contenders", lambda *_: others)
     monkeypatch.setattr(start_module, "CLEAR_DB", np.inf)
     monkeypatch.setattr(start_module, "chosen", lambda trials: ("environment-map", chosen(trials)[1]))
-    start = start_model(read_photo_set(folder), config)
+    start = start_model(read_photo_set(folder), config, show=show)
     found = [decision for decision in start.decisions if decision.effect == "light apart from the splats"]
     return found, start.light_name
+
+
+@pytest.mark.long
+def test_what_is_placed_and_what_trials_leave_are_shown_before_the_first_step(tmp_path, monkeypatch):
+    write_data_set(tmp_path / "same", n=16)
+    source, errors = read_photo_set(tmp_path / "same"), []
+    photo = source.photos[0]
+
+    def look(model, settings):
+        display = render_view(model, View.of(photo, model.origin_enu_m), settings=settings).display
+        errors.append(float(np.abs(display - source.picture(photo) / 255.0).mean()))
+
+    light_apart(tmp_path / "same", ASKED, monkeypatch, show=look)
+    placed, tried = errors
+    assert tried < placed < 0.3
 
 
 @pytest.mark.slow

@@ -24,6 +24,7 @@ from groundstation.services.reconstruct.messages import (
     CancelTraining,
     Devices,
     Ended,
+    FirstLook,
     Measured,
     ModelProcess,
     Pause,
@@ -137,6 +138,21 @@ def test_it_is_looked_at_while_it_trains_and_waits_and_its_end_is_a_model(heard,
     kept, finished = heard.seen(TRAINING, photo), heard.seen(Subject("model", out), photo)
     np.testing.assert_array_equal(kept.picture, finished.picture)
     assert read_model_card(out).n_steps == ended.summary["iterations"]
+
+
+@pytest.mark.long
+def test_what_it_begins_with_is_seen_before_the_first_step(heard, card, tmp_path):
+    path, photo = tmp_path / "light.toml", card.source.photos[0]
+    path.write_text('n_splats = 150\nmax_splats = 200\nlight = "environment-map"\n[reflections]\nsteps = 100000\n')
+    n_before = len(heard.kept)
+    heard.send(Train(card.folder, tmp_path / "model", TrainRequest(iterations=10, settings=path)))
+    heard.until(FirstLook)
+    told = heard.seen(Subject("photo", card.folder, photo.name), photo).picture.astype(int)
+    placed = heard.seen(TRAINING, photo).picture
+    assert np.abs(placed - told).mean() < 60
+    heard.send(CancelTraining())
+    assert heard.until(Ended).outcome == "kept"
+    assert not any(isinstance(message, Stepped) for message in heard.kept[n_before:])
 
 
 @pytest.mark.slow
