@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from planning.base.effects import Assessment, Decision, Effect, EffectSetting, decide
 from planning.base.messages import say
@@ -104,7 +104,7 @@ def surely_more(gains_db: Floats, tolerance_db: float, n_looks: int) -> bool | N
     n = len(gains_db)
     if n < 2:
         return None
-    reach = float(student.ppf(1.0 - 0.5 * MOST_WRONG / n_looks, n - 1)) * standard_error(gains_db)
+    reach = float(stdtrit(n - 1, 1.0 - 0.5 * MOST_WRONG / n_looks)) * standard_error(gains_db)
     mean = float(gains_db.mean())
     if mean - reach > tolerance_db:
         return True
