@@ -77,8 +77,8 @@ N_VIEWS, WIDTH_PX = 48, 256
 MINUTES = 8.0
 """Of the training."""
 
-STEPS, MEASURED = 60, 4
-"""Steps, and looks at the quality, after which the model can be seen for what it is."""
+SHOWN_FROM = 0.6
+"""Of the joint training, after which the model can be seen for what it is."""
 
 FIRST_DAY = date(2026, 1, 12)
 LEFT_OUT = 7
@@ -443,10 +443,11 @@ class _Tour(QObject):
             self._wait_for(lambda: not self._context.jobs())
 
         def has_learned() -> bool:
-            training = page().controller.training
-            n_steps = 0 if training.stepped is None else training.stepped.step
-            return n_steps >= STEPS and len(training.quality.y) >= MEASURED
+            stepped = page().controller.training.stepped
+            return stepped is not None and stepped.progress >= SHOWN_FROM
 
+        self._controller.open_path(photos / "site.json")
+        self._wait_until_idle()
         self._window.show_tab("reconstruct")
         page().controller.read(photos)
         self._wait_for(lambda: page().controller.card is not None and page().controller.cuda is not None)
@@ -459,6 +460,9 @@ class _Tour(QObject):
         page().side.train.click()
         self._wait_for(lambda: page().controller.training.stage is not None)
         self._take("reconstruct-preparing")
+        self._wait_for(lambda: page().controller.training.n_first_looks > 0)
+        rest()
+        self._take("reconstruct-first-look")
         self._wait_for(has_learned)
         page().side.pause.click()
         rest()

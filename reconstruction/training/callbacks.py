@@ -51,8 +51,8 @@ class TrainingSnapshot:
         Gains of the photos learned from, in the order of the record's `learned`.
     record
         Of the model, as `ModelRecord` has it.
-    step, seconds, progress
-        How far it is; progress 0 to 1.
+    step, seconds, progress, left_s
+        How far it is; progress of the joint training, 0 to 1, seconds of all, and those to go, None where not known.
     terms
         What each term of the loss was in the last step.
     history
@@ -68,6 +68,7 @@ class TrainingSnapshot:
     step: int
     seconds: float
     progress: float
+    left_s: float | None
     terms: dict[str, float]
     history: tuple[tuple[float, float], ...]
     settings: RasterSettings

@@ -197,6 +197,9 @@ class CoolDown:
         return self.progress + (1.0 - self.progress) * self.share(spent_s)
 
 
+LEAST_PROGRESS = 0.02
+"""That the rest of a training is judged by."""
+
 PAUSE_S = 0.05
 """Between looks at whether a pause is over."""
 
@@ -322,6 +325,15 @@ class Trainer(TrainingState):
         by_time = 1.0 if left_s <= 0.0 else (at.spent_s + self._reserve_s - at.began_s) / left_s
         return min(1.0, max(by_steps, by_time))
 
+    def _left_s(self) -> float | None:
+        """To go, by how far it has come since it began; None where it has hardly begun."""
+        at, progress = self.at, self.progress
+        if self._cool_down is not None:
+            return max(0.0, self._cool_down.begun_s + self._cool_down.lasts_s - at.spent_s)
+        if progress < LEAST_PROGRESS:
+            return None
+        return (at.spent_s - at.began_s) * (1.0 - progress) / progress
+
     def run(self, watching: Callbacks, until: float = 1.0) -> None:
         """Train to the end, until stopped and settled, or until time is up.
 
@@ -400,6 +412,7 @@ class Trainer(TrainingState):
                 at.step,
                 self._watch(),
                 self.progress,
+                self._left_s(),
                 {**self._terms},
                 tuple(at.history),
                 self._settings,

@@ -479,10 +479,8 @@ class ReconstructController(FolderController):
         if not self.is_busy:
             self._context.ongoingChanged.emit(None)
         elif stepped is not None:
-            done, seconds = stepped.progress, stepped.seconds
-            remaining_s = seconds * (1.0 - done) / done if done > 0.02 else None
             text = self.tr("Training: {0} steps").format(stepped.step)
-            self._context.ongoingChanged.emit(Ongoing(text, done, seconds, remaining_s))
+            self._context.ongoingChanged.emit(Ongoing(text, stepped.progress, stepped.seconds, stepped.left_s))
         elif stage is not None:
             share = stage.done / stage.total if stage.total > 0 else None
             text = self.tr("Training: {0}").format(self._context.localized(stage.stage))

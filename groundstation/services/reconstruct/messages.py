@@ -267,12 +267,13 @@ class FirstLook:
 
 @dataclass(frozen=True, slots=True)
 class Stepped:
-    """Where a training is; `terms` of the last step's loss."""
+    """Where a training is; `terms` of the last step's loss, `left_s` None where nobody knows yet."""
 
     phase: Phase
     step: int
     seconds: float
     progress: float
+    left_s: float | None
     n_splats: int
     terms: dict[str, float]
 

@@ -215,7 +215,8 @@ class _Server:
         if now - self._stepped_s >= REPORT_S:
             self._stepped_s = now
             phase: Phase = visit.state
-            self._tell(Stepped(phase, visit.step, visit.seconds, visit.progress, len(visit.model.splats), visit.terms))
+            at = visit.step, visit.seconds, visit.progress, visit.left_s
+            self._tell(Stepped(phase, *at, len(visit.model.splats), visit.terms))
         for t_s, value in visit.history[self._n_measured :]:
             self._tell(Measured(t_s, value))
         self._n_measured = max(self._n_measured, len(visit.history))

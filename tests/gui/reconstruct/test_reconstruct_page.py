@@ -36,7 +36,7 @@ from tests.cli.test_photos_without_a_site import write_project
 from tests.gui.driving import choose, clicked, escape, shut, turn_until
 
 TRAINING = Subject("training")
-STEP = Stepped("training", 12, 30.0, 0.1, 970, {"colour": 0.2, "high frequency": 0.5})
+STEP = Stepped("training", 12, 30.0, 0.1, 45.0, 970, {"colour": 0.2, "high frequency": 0.5})
 
 
 def take(page, *messages):
@@ -103,6 +103,8 @@ def test_a_chosen_data_set_is_shown_and_its_first_photo_looked_at(chosen):
 
 def test_a_training_goes_from_preparing_to_its_end_and_buttons_follow(chosen, tmp_path):
     assert not chosen._context.is_busy
+    ongoing = []
+    chosen._context.ongoingChanged.connect(ongoing.append)
     told = begin(chosen)
     assert chosen._context.is_busy, "nothing may hold the window up that can wait"
     assert (told.dataset, told.out, told.resume) == (chosen.controller.card.folder, tmp_path / "model", False)
@@ -115,6 +117,7 @@ def test_a_training_goes_from_preparing_to_its_end_and_buttons_follow(chosen, tm
     assert chosen.told.of(ViewRequest)[-1].subject == TRAINING
     take(chosen, STEP, Measured(30.0, 21.5))
     assert "12 steps, 970 splats; 21.50 dB" in chosen.progress.text()
+    assert ongoing[-1].remaining_s == STEP.left_s
     chosen.side.pause.click()
     assert chosen.told.of(Pause)[-1].is_on
     assert chosen.side.pause.text() == "Resume"

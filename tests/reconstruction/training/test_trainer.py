@@ -366,6 +366,16 @@ def test_windows_stay_where_enough_steps_fit_into_the_time(make, monkeypatch):
     assert not trainer.at.notes
 
 
+def test_it_tells_how_long_it_will_go_on_whatever_went_before(make, monkeypatch):
+    trainer, clock = timed(make, monkeypatch, 25.0, before_s=5.0)
+    left = []
+    trainer.run(Callbacks(visit=lambda at: left.append((at.left_s, 120.0 - clock()))))
+    assert left[0][0] is None
+    for told, true in left[2:-1]:
+        assert told == pytest.approx(true, abs=1.1)
+    assert left[-1][0] == pytest.approx(0.0, abs=0.1)
+
+
 def test_what_went_before_counts_for_the_time_limit(make, monkeypatch):
     trainer, _ = timed(make, monkeypatch, 8.0, before_s=5.0)
     trainer.run(Callbacks())
