@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from pathlib import Path
@@ -225,6 +226,8 @@ class ActiveTraining:
     ----------
     dataset, out
         Folders of what is learned from, and of the model.
+    begun_s
+        When it began, of `time.monotonic`.
     n_first_looks
         Models that there were to look at before the first step.
     quality
@@ -235,6 +238,7 @@ class ActiveTraining:
 
     dataset: Path = field(default_factory=Path)
     out: Path = field(default_factory=Path)
+    begun_s: float = 0.0
     stage: Stage | None = None
     n_first_looks: int = 0
     stepped: Stepped | None = None
@@ -349,7 +353,7 @@ class ReconstructController(FolderController):
             return
         resume = self.standing.is_interrupted
         request = self.choice.request(known.limit_bytes if known.is_reduced else None)
-        self.training, self.is_paused = ActiveTraining(card.folder, self.out), False
+        self.training, self.is_paused = ActiveTraining(card.folder, self.out, time.monotonic()), False
         if not resume:
             self.light, self.decisions = "", ()
         self._to(Phase.PREPARING)
@@ -484,7 +488,7 @@ class ReconstructController(FolderController):
         elif stage is not None:
             share = stage.done / stage.total if stage.total > 0 else None
             text = self.tr("Training: {0}").format(self._context.localized(stage.stage))
-            self._context.ongoingChanged.emit(Ongoing(text, share, 0.0, None))
+            self._context.ongoingChanged.emit(Ongoing(text, share, time.monotonic() - self.training.begun_s, None))
 
     def _tell_data_set(self) -> None:
         if self.card is not None:

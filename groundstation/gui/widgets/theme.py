@@ -37,7 +37,8 @@ AUTHORISATION, CONDITION, NO_LIMIT = "#c2570c", "#8a7a00", "#4f6d7a"
 class Colours:
     """Named colours of one theme, as `#rrggbb`.
 
-    `covered`, `open`, `unreachable` and `undecided` are the states of a hemisphere section.
+    `done` fills progress bars behind their text. `covered`, `open`, `unreachable` and `undecided` are the states of a
+    hemisphere section.
     """
 
     is_dark: bool
@@ -49,6 +50,7 @@ class Colours:
     handle: str
     accent: str
     accent_text: str
+    done: str
     error: str
     warning: str
     note: str
@@ -70,6 +72,7 @@ LIGHT = Colours(
     handle="#d7dde2",
     accent="#005a9c",
     accent_text="#ffffff",
+    done="#7fb2dd",
     error="#b3261e",
     warning="#8a5300",
     note="#005a9c",
@@ -86,6 +89,7 @@ DARK = Colours(
     handle="#2b343c",
     accent="#66b2e8",
     accent_text="#0b1014",
+    done="#22689c",
     error="#ff9d94",
     warning="#f2b950",
     note="#7cc0f0",
@@ -102,6 +106,7 @@ SUNLIGHT = Colours(
     handle="#b4bbc1",
     accent="#003f7a",
     accent_text="#ffffff",
+    done="#6fa3d0",
     error="#8c0f08",
     warning="#5e3800",
     note="#003f7a",
@@ -216,7 +221,7 @@ def _style_sheet(found: Colours) -> str:
     QCheckBox:focus, QRadioButton:focus {{ color: {found.accent}; text-decoration: underline; }}
     QTreeView::item, QListView::item {{ min-height: {TOUCH_PX - 8}px; }}
     QProgressBar {{ border: 1px solid {found.line}; border-radius: 4px; text-align: center; min-height: 20px; }}
-    QProgressBar::chunk {{ background: {found.accent}; }}
+    QProgressBar::chunk {{ background: {found.done}; }}
     QScrollBar:vertical {{ width: 16px; }} QScrollBar:horizontal {{ height: 16px; }}
     QSplitter::handle {{ background: {found.handle}; }}
     QGroupBox {{ font-weight: bold; border: none; margin-top: 1.4em; }}

@@ -112,6 +112,9 @@ def test_a_training_goes_from_preparing_to_its_end_and_buttons_follow(chosen, tm
     assert chosen.details.currentWidget() is chosen.progress
     take(chosen, Stage("learning reflections", 3, 80))
     assert chosen.progress.text() == "Learning reflections"
+    chosen.controller.training.begun_s -= 65.0
+    take(chosen, Stage("learning reflections", 4, 80))
+    assert 65.0 <= ongoing[-1].elapsed_s < 95.0
     assert "The model is shown here once it learns" in chosen.pane.view.note()
     take(chosen, STEP)
     assert chosen.told.of(ViewRequest)[-1].subject == TRAINING

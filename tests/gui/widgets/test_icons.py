@@ -1,4 +1,4 @@
-"""The set of icons: each is drawn, in the colour it is asked for, and says its licence; buttons follow the theme."""
+"""Icons and colours: icons are drawn in the colour asked for and say their licence; text can be read in each theme."""
 
 import pytest
 from PySide6.QtGui import QColor
@@ -60,3 +60,24 @@ def test_a_button_has_its_icon_in_the_colours_of_the_theme(application):
     apply_theme(application, Theme.LIGHT)
     tint_all(application)
     assert lightness(button) == dark_on_light
+
+
+def luminance(colour):
+    """WCAG 2.2's relative luminance of an sRGB colour."""
+    values = [int(colour[at : at + 2], 16) / 255.0 for at in (1, 3, 5)]
+    linear = [value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4 for value in values]
+    return sum(share * value for share, value in zip((0.2126, 0.7152, 0.0722), linear, strict=True))
+
+
+@pytest.mark.parametrize("theme", ["LIGHT", "DARK", "SUNLIGHT"])
+def test_text_of_every_theme_can_be_read_on_what_is_behind_it(theme):
+    from groundstation.gui.widgets import theme as themes
+
+    found = getattr(themes, theme)
+    pairs = [(found.accent_text, found.accent)]
+    pairs += [(found.text, behind) for behind in (found.window, found.base, found.done)]
+    named = (found.muted, found.error, found.warning, found.note, found.ok)
+    pairs += [(text, behind) for text in named for behind in (found.window, found.base)]
+    for text, behind in pairs:
+        dark, light = sorted((luminance(text), luminance(behind)))
+        assert (light + 0.05) / (dark + 0.05) >= 4.5, f"{text} on {behind}"
