@@ -338,8 +338,6 @@ class _Tour(QObject):
         page.buttons.button(Request.PAUSE).click()
         self._wait_for(page.buttons.button(Request.RESUME).isEnabled)
         self._take("fly-paused")
-        page.band.show_lost(7.0)
-        self._take("fly-link-lost", rest_ms=0)
         page.buttons.button(Request.RETURN).click()
         self._wait_for(lambda: page.report.top_up.isEnabled())
         self._take("fly-report")
