@@ -560,8 +560,8 @@ class _Tour(QObject):
             yield name
         self._controller.choose(language=Language.ENGLISH)
 
-    def _take(self, name: str, widget: QWidget | None = None, rest_ms: int = SETTLE_MS) -> None:
-        self._rest(rest_ms)
+    def _take(self, name: str, widget: QWidget | None = None) -> None:
+        self._rest(SETTLE_MS)
         for canvas in self._window.findChildren(Canvas):
             canvas.show_all_layers()
         path = self._folder / f"{name}.png"
