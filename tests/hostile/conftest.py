@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -29,32 +31,44 @@ class Forks:
     """The process that does the cases; see `tests.hostile.forks`."""
 
     def __init__(self, folder: Path) -> None:
-        self._said = (folder / "said.txt").open("w+")
+        self.said = (folder / "said.txt").open("w+")
         home = {"HOME": str(folder), "REFLIGHT_CONFIG_DIR": str(folder / "config"), "TMPDIR": str(folder)}
-        self._process = subprocess.Popen(
-            [sys.executable, "-W", "error", "-m", "tests.hostile.forks"],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._said, text=True, cwd=ROOT,
-            env={**os.environ, **home, "PYTHONPATH": str(ROOT), "NUMBA_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
-        )  # fmt: skip
-        self._ask(LOADED)
+        threads = {"NUMBA_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+        self._environment = {**os.environ, **home, **threads, "PYTHONPATH": str(ROOT)}
+        self._process: subprocess.Popen[str] | None = None
 
     def run(self, job: dict[str, object]) -> dict[str, object]:
         """Do a case."""
+        if self._process is None:
+            self._process = subprocess.Popen(
+                [sys.executable, "-W", "error", "-m", "tests.hostile.forks"],
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.said, text=True, cwd=ROOT,
+                env=self._environment, start_new_session=True,
+            )  # fmt: skip
+            self._ask(LOADED)
         return json.loads(self._ask(job))
 
     def _ask(self, question: object) -> str:
-        self._process.stdin.write(json.dumps(question) + "\n")
-        self._process.stdin.flush()
-        answer = self._process.stdout.readline()
-        assert answer, Path(self._said.name).read_text()
+        """Its answer; where none is waited for any more, it ends: the next case would be told this one's."""
+        try:
+            self._process.stdin.write(json.dumps(question) + "\n")
+            self._process.stdin.flush()
+            answer = self._process.stdout.readline()
+        except BaseException:
+            os.killpg(self._process.pid, signal.SIGKILL)
+            self.close()
+            raise
+        assert answer, Path(self.said.name).read_text()
         return answer
 
     def close(self) -> None:
         """End it."""
-        self._process.stdin.close()
-        self._process.wait()
-        self._process.stdout.close()
-        self._said.close()
+        if self._process is not None:
+            with contextlib.suppress(BrokenPipeError):
+                self._process.stdin.close()
+            self._process.wait()
+            self._process.stdout.close()
+            self._process = None
 
 
 @pytest.fixture(scope="session")
@@ -75,3 +89,4 @@ def forks(tmp_path_factory):
     opened = Forks(tmp_path_factory.mktemp("forks"))
     yield opened
     opened.close()
+    opened.said.close()

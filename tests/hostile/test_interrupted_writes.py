@@ -229,6 +229,7 @@ def test_a_command_that_is_killed_leaves_old_or_new(write, workspace, tmp_path, 
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(3600)  # a training has dozens of writes, each followed by another training
 @pytest.mark.parametrize("write", WRITES, ids=ids)
 def test_a_command_that_is_killed_at_any_write_leaves_old_or_new(write, full_workspace, tmp_path, forks):
     case, rng = Case(write, full_workspace, tmp_path, forks), random.Random(zlib.crc32(write.name.encode()))
