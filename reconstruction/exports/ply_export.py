@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.errors import InputError
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from reconstruction.exports.component_parts import Ellipsoids, check_scene
@@ -68,14 +69,15 @@ def write_ply(
     Raises
     ------
     InputError
-        There is nothing to see, numbers are not finite, or the file cannot be written.
-    ValueError
-        The scene has ellipsoids, and `kind` is `2dgs`.
+        There is nothing to see, numbers are not finite, or the file cannot be written; the scene has ellipsoids, and
+        `kind` is `2dgs`.
     """
     if not 0 <= degree <= 3:
         raise ValueError(f"degree: expected 0 to 3, got {degree}")
     if kind == "2dgs" and not are_discs(scene):
-        raise ValueError("kind: expected '3dgs' for ellipsoids, got '2dgs'")
+        raise InputError(
+            say("not written: the model has ellipsoids, which are no discs; write them as a usual PLY file", place=path)
+        )
     check_scene(scene, path)
     n = 0
     for block in blocks_of(scene, "enu", least_opacity, monitor, say("counting Gaussians")):

@@ -10947,6 +10947,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>nicht geschrieben</translation>
     </message>
     <message>
+        <source>not written: the model has ellipsoids, which are no discs; write them as a usual PLY file</source>
+        <translation>nicht geschrieben: das Modell hat Ellipsoide, die keine Scheiben sind; als gewöhnliche PLY-Datei schreiben</translation>
+    </message>
+    <message>
         <source>not written: there is no export into a file of this ending; name a folder, which gets a CSV table for each kind of records (any spreadsheet opens them), or a name ending in .ifc</source>
         <translation>nicht geschrieben: Es gibt keinen Export in eine Datei dieser Endung; einen Ordner nennen, der eine CSV-Tabelle für jede Art von Einträgen bekommt (jede Tabellenkalkulation öffnet sie), oder einen Namen mit der Endung .ifc</translation>
     </message>

@@ -68,7 +68,7 @@ def test_what_cannot_be_written_is_refused(tmp_path):
     scene = synthetic_scene()
     for component in scene.components:
         component.gaussians.values["log_scales"] = np.zeros((len(component.gaussians), 3), np.float32)
-    with pytest.raises(ValueError, match="expected '3dgs' for ellipsoids"):
+    with pytest.raises(InputError, match="the model has ellipsoids"):
         write_ply(scene, path, "2dgs")
     with pytest.raises(ValueError, match="degree: expected 0 to 3"):
         write_ply(scene, path, degree=4)
