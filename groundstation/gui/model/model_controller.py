@@ -134,6 +134,7 @@ class ModelController(QObject):
         self.is_reading = False
         self.card, self.others = found
         self.selected, self.colour_by = "", ""
+        self.level = "panel" if self.card.panels else "building"
         self._colour()
         self.sceneChanged.emit()
         self.selectionChanged.emit()

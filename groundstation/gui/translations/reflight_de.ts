@@ -10295,10 +10295,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>k4: erwartet wird 0, da nur k1, k2, k3, p1 und p2 verstanden werden</translation>
     </message>
     <message>
-        <source>keep records of its panes, and export it for other programs</source>
-        <translation>Einträge zu seinen Scheiben führen, und es für andere Programme exportieren</translation>
-    </message>
-    <message>
         <source>keep the aircraft in sight: it goes on by itself, and is shown again once it is heard</source>
         <translation>das Fluggerät im Blick behalten: Es fliegt von selbst weiter und wird wieder gezeigt, sobald es zu hören ist</translation>
     </message>
@@ -15445,6 +15441,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>it knows no mountpoint of this name; it has {0}</source>
         <translation>er kennt keinen Mountpoint dieses Namens; er hat {0}</translation>
+    </message>
+    <message>
+        <source>keep its records, and export it for other programs</source>
+        <translation>Einträge dazu führen, und es für andere Programme exportieren</translation>
     </message>
     <message>
         <source>sections seen only with pixels larger than {0} mm: {1} of {2} covered</source>

@@ -347,7 +347,7 @@ def _reconstruct(now: Milestones) -> Guidance:
 
 def _model(now: Milestones) -> Guidance:
     if now.is_model_open:
-        further = say("keep records of its panes, and export it for other programs")
+        further = say("keep its records, and export it for other programs")
         return Guidance(True, say("the model is open"), further, say("Export"), Act.EXPORT_MODEL)
     if now.model is not None:
         return Guidance(False, say("a model is trained"), say("open it"), say("Open the model"), Act.OPEN_MODEL)

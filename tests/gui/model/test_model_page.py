@@ -102,6 +102,16 @@ def test_a_scene_shows_its_panels_and_asks_for_its_picture(opened):
     assert opened.pane.view.pictures()[0] is not None
 
 
+def test_of_a_scene_without_panels_records_of_the_building_are_kept(application, page, tmp_path):
+    write_scene(synthetic_scene(()), tmp_path / "plain.gsscene")
+    page.controller.open(tmp_path / "plain.gsscene")
+    turn_until(application, lambda: page.controller.card is not None and not page._context.jobs())
+    assert names(page) == []
+    assert page.records.level.currentData() == "building"
+    assert page.records.title.text() == page.controller.card.name
+    assert page.records.add.isEnabled()
+
+
 def test_a_trained_model_is_organised_by_the_process_and_then_opened(application, page, scene, tmp_path):
     model = tmp_path / "made.model"
     model.mkdir()
