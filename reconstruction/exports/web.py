@@ -16,6 +16,7 @@ import base64
 import hashlib
 import html
 import json
+import math
 import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
@@ -39,7 +40,7 @@ from reconstruction.exports.page_parts import PART, GlassValues, TwoLevels, two_
 from reconstruction.exports.page_records import Row, by_object, columns_of, files_of
 from reconstruction.gpu.shaders import shader
 from reconstruction.objects.gs_scene import GsElement, GsScene
-from reconstruction.objects.store import largest, middle_of, outward
+from reconstruction.objects.store import largest, middle_of, outward, usual_look
 from reconstruction.splats.harmonic_colour import light_of_display
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.rasteriser import rasterise
@@ -269,6 +270,9 @@ HALF_FIELD = 0.46
 STEEPEST = 1.55
 """Pitch of the page's camera at most, radians."""
 
+AHEAD_RAD = 0.2
+"""Off the middle of a photo, what stands there still counts as what it was taken of."""
+
 CLEAR_M = 1.0
 """Before a facade: frames and sunshades stand out that far, and are looked at, too."""
 
@@ -321,10 +325,11 @@ def described_panes(scene: GsScene, elements: Sequence[GsElement]) -> dict[str, 
 
 
 def first_view(scene: GsScene, elements: Sequence[GsElement], gaussians: Ellipsoids) -> dict[str, Any]:
-    """Where to look at first: square at the facade of the largest area, else at the Gaussians from the south.
+    """Where to look at first: square at the facade of the largest area, else as the photo in the midst of the others.
 
-    A place in metres, heading and pitch in radians, half the width and height of what is to be seen there, how far it
-    comes forward, and how far from that one can go back before something else stands in the way.
+    Where that is not known either it is at the Gaussians, from the south. A place in metres, heading and pitch in
+    radians, half the width and height of what is to be seen there, how far it comes forward, and how far from that one
+    can go back before something else stands in the way.
     """
     origin = np.asarray(scene.origin_enu_m, np.float64)
     facades = [
@@ -333,6 +338,9 @@ def first_view(scene: GsScene, elements: Sequence[GsElement], gaussians: Ellipso
         if component.elements
     ]
     if not facades:
+        as_photographed = _photographed(scene, gaussians)
+        if as_photographed is not None:
+            return as_photographed
         places = gaussians.means_m.astype(np.float64) if len(gaussians) else np.zeros((1, 3))
         low, high = np.quantile(places, (0.05, 0.95), axis=0)  # a few lie far out
         radius = max(float(np.linalg.norm(high - low)) / 2.0, 0.5)
@@ -348,6 +356,23 @@ def first_view(scene: GsScene, elements: Sequence[GsElement], gaussians: Ellipso
     half, front = np.maximum(np.abs(inside[:, :2]).max(axis=0), 0.25), float(-inside[:, 2].min())
     free = _free_m(gaussians, middle, axes, half, front)
     return _view(middle, heading, pitch, half, front, free)
+
+
+def _photographed(scene: GsScene, gaussians: Ellipsoids) -> dict[str, Any] | None:
+    """From where the photo in the midst of the others was taken, at what stands in its middle; None where not known."""
+    look = usual_look(scene.training)
+    if look is None:
+        return None
+    place, forward = look[0] - np.asarray(scene.origin_enu_m, np.float64), look[1]
+    towards = gaussians.means_m - place
+    depths = towards @ forward
+    is_ahead = depths > np.linalg.norm(towards, axis=1) * math.cos(AHEAD_RAD)
+    if not is_ahead.any():
+        return None
+    distance = float(np.median(depths[is_ahead]))
+    pitch = float(np.clip(np.arcsin(np.clip(forward[2], -1.0, 1.0)), -STEEPEST, STEEPEST))
+    heading = float(np.arctan2(forward[0], forward[1]))
+    return _view(place + distance * forward, heading, pitch, np.full(2, distance * HALF_FIELD), 0.0, distance)
 
 
 def _axes(heading: float, pitch: float) -> Array:

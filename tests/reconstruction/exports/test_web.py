@@ -316,6 +316,21 @@ def opening_of(scene):
     return view, np.array([cp * sh, cp * ch, sp])
 
 
+def test_without_panels_a_page_begins_where_a_photo_in_the_midst_of_the_others_was_taken():
+    scene = synthetic_scene((), n_background=60)
+    means = scene.components[-1].gaussians.values["means"]
+    means[:40] = np.random.default_rng(0).uniform((5.5, 7.5, 0.5), (6.5, 8.5, 1.5), (40, 3))
+    means[40:] = (-30.0, -30.0, 2.0)
+    places = np.array([(0.0, 0.0, 1.0), (-9.0, 0.0, 1.0), (9.0, 1.0, 1.0)]) + scene.origin_enu_m
+    forwards = [(0.6, 0.8, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
+    view, forward = opening_of(replace(scene, training={"places_enu_m": places.tolist(), "forwards_enu": forwards}))
+    np.testing.assert_allclose(forward, forwards[0], atol=1e-5)
+    np.testing.assert_allclose(view["target"] - 10.0 * forward, (0.0, 0.0, 1.0), atol=0.3)
+    assert view["half"][0] == pytest.approx(10.0 * web.HALF_FIELD, rel=0.05)
+    unknown, _ = opening_of(replace(scene, training={}))
+    assert unknown["heading"] == 0.0
+
+
 def facade_of(n, width_m, height_m, turn):
     """A scene of one more facade beside the made one's: n panes side by side, turned from a plane that looks south."""
     scene = synthetic_scene(sizes=((0, 0, 0), (0,) * n), n_background=400)
