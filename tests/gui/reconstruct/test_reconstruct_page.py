@@ -80,7 +80,7 @@ def test_a_folder_of_colmap_is_made_a_data_set_of_plain_splats(application, page
     assert page.controller.card.folder == tmp_path / "wall.dataset"
     assert "plain splats" in page.messages[-1].text
     assert any("one unit of it counts as" in each.text for each in page.messages)
-    assert page.controller.choice.method == page.side.form.value().method == "2dgs"
+    assert page.controller.choice.method == page.side.form.value().method == "3dgs"
     assert page.side.train.isEnabled()
     assert "Some unseen views" in headings(page)
 
