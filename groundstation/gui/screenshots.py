@@ -206,7 +206,8 @@ class _Tour(QObject):
         self._window.show_tab("plan")
         page = self._page("plan", PlanPage)
         self._take("plan-nothing-yet")
-        page.controller.set_request(PlanRequest(n_views=80, time_budget_s=12.0))
+        shown = PlanRequest(n_views=80, time_budget_s=12.0)
+        page.controller.set_request(shown)
         page.controller.plan()
         self._wait_for(lambda: "sections" in page.chart.text())
         self._take("plan-running")
@@ -216,6 +217,7 @@ class _Tour(QObject):
         page.controller.plan()
         self._wait_until_idle()
         page.controller.choose(self._context.document.plans[0].id)
+        page.controller.set_request(shown)
         self._wait_until_idle()
 
     def _planned(self) -> None:
