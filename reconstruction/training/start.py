@@ -423,12 +423,7 @@ def start_model(
         outlier_photos="on" if told.outlier_photos.on else "off",
     )
     decisions: tuple[Decision, ...] = (told.own_exposures, told.outlier_photos)
-    known = [source.own_exposures.get(photo.name, 1.0) for photo in learned]
-    exposures = Exposures(np.array(known)[:, None] * point_gains) if has_gains else Exposures(known)
-    if has_gains:
-        gains = np.exp(np.log(point_gains).mean(axis=1)) * known
-        own = dict(zip([photo.name for photo in learned], gains.tolist(), strict=True))
-        source = replace(source, own_exposures={**source.own_exposures, **own})
+    exposures, source = _exposures(source, learned, point_gains if has_gains else None)
     if interrupted is not None:
         splats = splats_from_tensors(interrupted.splats, str(checkpoint))
     elif splats_path is not None:
@@ -472,6 +467,18 @@ def start_model(
         notes if light is None else (*notes, *light.notes),
         None if light is None else light.transients,
     )
+
+
+def _exposures(
+    source: PhotoSet, learned: Sequence[PosedPhoto], point_gains: Array | None
+) -> tuple[Exposures, PhotoSet]:
+    """Gains of photos to start from, as points tell them, shape (n, 3), or as is known; and the photo set with them."""
+    known = np.array([source.own_exposures.get(photo.name, 1.0) for photo in learned])
+    if point_gains is None:
+        return Exposures(known), source
+    gains = np.exp(np.log(point_gains).mean(axis=1)) * known
+    own = dict(zip([photo.name for photo in learned], gains.tolist(), strict=True))
+    return Exposures(known[:, None] * point_gains), replace(source, own_exposures={**source.own_exposures, **own})
 
 
 SHOWN_PX = 512 * 384
