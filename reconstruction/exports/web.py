@@ -348,9 +348,7 @@ def first_view(scene: GsScene, elements: Sequence[GsElement], gaussians: Ellipso
     quads = facades[largest(facades)]
     normal, middle = outward(quads), middle_of(quads)
     forward = np.array([0.0, 1.0, 0.0]) if normal is None else -normal  # panels on all sides: from the south
-    is_level = np.hypot(forward[0], forward[1]) > 1e-6
-    heading = float(np.arctan2(forward[0], forward[1])) if is_level else 0.0
-    pitch = float(np.clip(np.arcsin(np.clip(forward[2], -1.0, 1.0)), -STEEPEST, STEEPEST))
+    heading, pitch = _angles(forward)
     axes = _axes(heading, pitch)
     inside = (quads.reshape(-1, 3) - middle) @ axes.T
     half, front = np.maximum(np.abs(inside[:, :2]).max(axis=0), 0.25), float(-inside[:, 2].min())
@@ -370,9 +368,15 @@ def _photographed(scene: GsScene, gaussians: Ellipsoids) -> dict[str, Any] | Non
     if not is_ahead.any():
         return None
     distance = float(np.median(depths[is_ahead]))
-    pitch = float(np.clip(np.arcsin(np.clip(forward[2], -1.0, 1.0)), -STEEPEST, STEEPEST))
-    heading = float(np.arctan2(forward[0], forward[1]))
+    heading, pitch = _angles(forward)
     return _view(place + distance * forward, heading, pitch, np.full(2, distance * HALF_FIELD), 0.0, distance)
+
+
+def _angles(forward: Array) -> tuple[float, float]:
+    """Heading and pitch, as the page's camera can have them, of a unit direction."""
+    is_level = np.hypot(forward[0], forward[1]) > 1e-6
+    heading = float(np.arctan2(forward[0], forward[1])) if is_level else 0.0
+    return heading, float(np.clip(np.arcsin(np.clip(forward[2], -1.0, 1.0)), -STEEPEST, STEEPEST))
 
 
 def _axes(heading: float, pitch: float) -> Array:

@@ -23,7 +23,7 @@ Primitive = Literal["discs", "ellipsoids"]
 
 DEFAULT_METHOD, PLAIN_METHOD = "reflight", "3dgs"
 """What is trained where nothing else is asked for, with panels and without: on real photos without panels ellipsoids
-are hardly ever behind discs, and mostly before them (`python -m tests.benchmarks --only real-photos`)."""
+are mostly ahead of discs (`python -m tests.benchmarks --only real-photos`)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -432,8 +432,7 @@ def start_model(
     else:
         splats, on_points = _placed_splats(source, learned, scene, origin, config, monitor)
         decisions += on_points
-    raster = replace(config.raster, threads=config.threads)
-    show(_joined(source, learned, splats, None, None, origin, config).eval(), raster)
+    _show(_joined(source, learned, splats, None, None, origin, config), config, show)
     light: TrainedReflections | None = None
     shader: Shader | None = None
     is_told = False
@@ -467,6 +466,10 @@ def start_model(
         notes if light is None else (*notes, *light.notes),
         None if light is None else light.transients,
     )
+
+
+def _show(model: SceneModel, config: TrainConfig, show: Show) -> None:
+    show(model.eval(), replace(config.raster, threads=config.threads))
 
 
 def _exposures(
@@ -630,7 +633,7 @@ def _is_worth(
     unsure_db = standard_error(scores[best] - scores[ALONE_MODEL])
     worth = decide(SeparateLight(), (means[best], means[ALONE_MODEL], unsure_db, tried.trials.seconds))
     better = trials[best if worth.on else ALONE_MODEL]
-    show(better.trainer.model.eval(), replace(config.raster, threads=config.threads))
+    _show(better.trainer.model, config, show)
     kept = splats_from_tensors(splats_to_tensors(better.trainer.model.splats), str(source.folder))
     return _Worth(worth, best if worth.on else ALONE_MODEL, means, kept)
 
