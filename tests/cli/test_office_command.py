@@ -47,7 +47,8 @@ def office(reflight, shared_data, tmp_path):
     plans = {}
     for profile in ("m3e", "ardupilot"):
         plans[profile] = tmp_path / f"{profile}.plan.json"
-        done = reflight("plan", site, "-o", plans[profile], "--views", 120, "--profile", profile, "--json")
+        asked = ("--views", 120, "--objective", "sections", "--profile", profile)
+        done = reflight("plan", site, "-o", plans[profile], *asked, "--json")
         assert done.status == 0, done.err
         assert 0.8 < done.json["covered"] / done.json["reachable_upper_bound"] < 0.97
         assert reflight("check", plans[profile], site).status == 0
@@ -62,7 +63,7 @@ def test_office_goes_from_ifc_to_every_mission_file_and_back(reflight, office, t
         mission, back = tmp_path / f"office{ending}", tmp_path / f"back{ending}.json"
         done = reflight("export", plans[profile], "--format", file_format, "-o", mission, "--json")
         assert done.status == 0, done.err
-        assert done.json["findings"] == []
+        assert {each["severity"] for each in done.json["findings"]} <= {"note", "ok"}
         files = done.json["files"]
         for file in files:
             assert is_flyable(CHECKS[file_format](Path(file))), file

@@ -3,6 +3,7 @@
 import json
 import sys
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -178,8 +179,14 @@ def test_a_folder_of_something_else_is_left_alone_whatever_the_scene(render, ref
 
 @pytest.mark.slow
 def test_views_inside_buildings_opposite_are_told(reflight, pane, changed, tmp_path):
-    plan = changed(pane / "plan.json", "viewpoints", 0, "position_enu_m", [0.0, -40.0, 6.0])
-    done = reflight("scene", "render", pane / "site.json", "--plan", plan, "-o", tmp_path / "out", *QUICK)
+    render = partial(reflight, "scene", "render", pane / "site.json", *QUICK, "--plan")
+    assert render(pane / "plan.json", "-o", tmp_path / "before").err == ""
+    built = json.loads((tmp_path / "before" / "site.json").read_text())["obstacles"]
+    (west, south, _), (east, north, _) = next(each["box_enu_m"] for each in built if "opposite" in each["id"])
+    plan = changed(
+        pane / "plan.json", "viewpoints", 0, "position_enu_m", [0.5 * (west + east), 0.5 * (south + north), 6.0]
+    )
+    done = render(plan, "-o", tmp_path / "out")
     assert done.status == 0, done.err
     assert "stand inside buildings opposite" in done.err
 

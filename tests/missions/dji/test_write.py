@@ -122,6 +122,7 @@ def test_aircraft_that_dji_does_not_make_is_refused_with_the_list(profile: str) 
 def test_every_photo_is_aimed_settled_and_taken_in_order(plan: Plan) -> None:
     for mission in missions_from_plan(plan):
         template, waylines = parts(mission)
+        first = next(photo for waypoint in mission.waypoints for photo in waypoint.photos)
         for part in (template, waylines):
             found = placemarks(part)
             assert len(found) == len(mission.waypoints)
@@ -138,14 +139,15 @@ def test_every_photo_is_aimed_settled_and_taken_in_order(plan: Plan) -> None:
                     assert tilted["gimbalPitchRotateEnable"] == "1"
                     assert tilted["gimbalHeadingYawBase"] == "north"
                     assert tilted["gimbalYawRotateEnable"] == tilted["gimbalRollRotateEnable"] == "0"
-                    assert left.pop(0)[0] == "zoom"
-                    if part is waylines:
-                        assert left.pop(0)[0] == "focus"
-                    if plan.rules.settle_s > 0:
-                        name, hover = left.pop(0)
-                        assert (name, float(hover["hoverTime"])) == ("hover", plan.rules.settle_s)
-                    name, shot = left.pop(0)
-                    assert (name, shot["fileSuffix"]) == ("takePhoto", photo.viewpoint_id)
+                    until = [name for name, _ in left].index("takePhoto")
+                    (done, shot), before, left = left[until], left[:until], left[until + 1 :]
+                    # Focus is locked by default: it is found once, before the first photo.
+                    focused = ["focus", "setFocusType"] if part is waylines and photo is first else []
+                    assert [name for name, _ in before if name != "hover"] == ["zoom", *focused]
+                    hovers = [float(hover["hoverTime"]) for name, hover in before if name == "hover"]
+                    assert hovers == ([plan.rules.settle_s] if plan.rules.settle_s > 0 else [])
+                    assert hovers == [] or before[-1][0] == "hover"
+                    assert (done, shot["fileSuffix"]) == ("takePhoto", photo.viewpoint_id)
                 assert left == []
 
 
