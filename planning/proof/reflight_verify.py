@@ -524,8 +524,8 @@ class Case:
         return f"at least {covered:g} of {total} sections are covered, occlusion {self.occlusion}"
 
     def reachable(self) -> str:
-        total, done, shown = len(self.panes) * self.n, set(), 0
         bound = number(get(self.plan, "coverage", dict), "reachable_upper_bound")
+        total, most, done, shown = len(self.panes) * self.n, len(self.panes) * len(self.views), set(), 0
         for row in get(self.proof, "boxes", list):
             done.add(place_in(row[0], total, "boxes"))
             self._exclude(int(row[0]), row[1])
@@ -537,8 +537,8 @@ class Case:
             shown += inside and self.lies_in(place, place_in(element, total, "witnesses"), by)
         demand(total - len(done) <= bound, f"{len(done)} of {total - bound:g} sections are shown to be out of reach")
         return (f"no flight in this airspace, {self.height_m:g} m above {self.ground}, with this gimbal and "
-                f"{self.near_m:g} m from everything covers more than {bound:g} of {total} sections "
-                f"({shown} not covered have a place shown)")
+                f"{self.near_m:g} m from everything covers more than {bound:g} of {total} sections ({shown} not "
+                f"covered have a place shown), {len(self.views)} photos no more than {min(bound, most):g}")
 
     def _exclude(self, element: int, text: str) -> None:
         """A tree of boxes leaves no place from which a section is seen.

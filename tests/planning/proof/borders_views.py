@@ -248,6 +248,11 @@ def _of_witnesses(probe: Probe) -> Iterator[Any]:
     for bound in (-1.0, 0.0, 0.5, float(len(case.panes) * case.n) - 0.5):
         case.plan["coverage"]["reachable_upper_bound"] = bound
         yield probe.said(case.reachable)
+    views = case.views
+    for n_views in range(4):
+        case.views = views[:n_views]
+        yield probe.said(case.reachable)
+    case.views = views
     for covered in (-1.0, nextafter(0.0, -inf), 0.0, nextafter(0.0, inf)):
         case.plan["coverage"]["covered"] = covered
         yield probe.said(case.coverage)
