@@ -11,6 +11,7 @@ import json
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -385,15 +386,27 @@ def _silhouette(eye: Array, triangles: Array, vertices: NDArray[np.int64]) -> tu
     normals /= np.sqrt(np.einsum("tk,tk->t", normals, normals))[:, None]
     if (rays.reshape(-1, 3) @ normals[0] < 2.0 * SLACK_M).any():
         return None
-    a, b = numbers.ravel(), np.roll(numbers, -1, axis=1).ravel()
-    n = int(vertices.max()) + 1
-    if len(np.unique(a * n + b)) < len(a):
+    kept = _outline(numbers.tobytes())
+    if kept is None:
         return None
-    kept = ~np.isin(a * n + b, b * n + a)
     starts, ends = ring.reshape(-1, 3)[kept] - eye, np.roll(ring, -1, axis=1).reshape(-1, 3)[kept] - eye
     planes = _cross(starts, ends)
     planes /= np.sqrt(np.einsum("ek,ek->e", starts, starts) * np.einsum("ek,ek->e", ends, ends))[:, None]
     return np.concatenate([normals, ring[:, 0]], axis=1), planes
+
+
+@lru_cache(maxsize=1024)
+def _outline(numbers: bytes) -> NDArray[np.bool_] | None:
+    """Which edges of triangles, three corners each, have no neighbour; None where one is there twice.
+
+    A facade's panels see most patches by the same triangles, turned the same way.
+    """
+    corners = np.frombuffer(numbers, np.int64).reshape(-1, 3)
+    a, b = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
+    n = int(corners.max()) + 1
+    if len(np.unique(a * n + b)) < len(a):
+        return None
+    return ~np.isin(a * n + b, b * n + a)
 
 
 def _cross(a: Array, b: Array) -> Array:
