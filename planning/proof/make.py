@@ -311,9 +311,15 @@ class _Patches:
         self.triangles = triangles
         _, vertices = np.unique(triangles.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
         self.vertices = vertices.reshape(-1, 3).astype(np.int64)
-        label = convex_groups(triangles)
-        self.groups = [np.flatnonzero(label == each) for each in np.unique(label)]
-        self.means = [triangles[group].reshape(-1, 3).mean(axis=0) for group in self.groups]
+        _, group, sizes = np.unique(convex_groups(triangles), return_inverse=True, return_counts=True)
+        self.order = np.argsort(group, kind="stable")
+        self.starts = np.cumsum([0, *sizes])
+        self.corners, self.group = triangles[self.order], group[self.order]
+        across = _cross(self.corners[:, 1] - self.corners[:, 0], self.corners[:, 2] - self.corners[:, 0])
+        self.area = np.maximum(np.linalg.norm(across, axis=1), 1e-30)
+        self.normals = across / self.area[:, None]
+        means = np.add.reduceat(self.corners.mean(axis=1), self.starts[:-1]) / sizes[:, None]
+        self.of_mean = ((means[self.group] - self.corners[:, 0]) * self.normals).sum(axis=1)
         self._numbers: dict[tuple[int, ...], int] = {}
 
     def number(self, patch: tuple[int, ...]) -> int:
@@ -327,21 +333,16 @@ class _Patches:
 
     def seen_from(self, pane: Pane) -> list[tuple[int, ...]]:
         """Parts of groups that face a panel's target and stand in front of it, the largest seen first."""
-        eye, normal = np.array(pane.target), np.array(pane.n)
-        found = []
-        for group, mean in zip(self.groups, self.means, strict=True):
-            corners = self.triangles[group]
-            if not ((corners - eye) @ normal).max() > 0.0:
-                continue
-            across = _cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-            area = np.maximum(np.linalg.norm(across, axis=1), 1e-30)
-            of_eye = ((eye - corners[:, 0]) * across).sum(axis=1) / area
-            of_mean = ((mean - corners[:, 0]) * across).sum(axis=1) / area
-            facing = (np.abs(of_eye) > 1e-3) & ((of_eye * of_mean < 0.0) | (np.abs(of_mean) < 1e-4))
-            if facing.any():
-                reach = np.linalg.norm(corners[facing] - eye, axis=2).min()
-                found.append((float(area[facing].sum() / max(reach, 1e-3) ** 2), tuple(group[facing].tolist())))
-        return [patch for _, patch in sorted(found, reverse=True)[:MOST_PATCHES]]
+        eye, first = np.array(pane.target), self.starts[:-1]
+        rays = self.corners - eye
+        in_front = np.maximum.reduceat((rays @ np.array(pane.n)).max(axis=1), first) > 0.0
+        of_eye = -(rays[:, 0] * self.normals).sum(axis=1)
+        facing = (np.abs(of_eye) > 1e-3) & ((of_eye * self.of_mean < 0.0) | (np.abs(self.of_mean) < 1e-4))
+        away2 = np.where(facing, np.einsum("tck,tck->tc", rays, rays).min(axis=1), np.inf)
+        seen = np.bincount(self.group, facing * self.area) / np.maximum(np.minimum.reduceat(away2, first), 1e-6)
+        largest = np.argsort(-np.where(in_front, seen, 0.0), kind="stable")[:MOST_PATCHES]
+        parts = [slice(*self.starts[k : k + 2]) for k in largest.tolist() if in_front[k] and seen[k] > 0.0]
+        return [tuple(self.order[part][facing[part]].tolist()) for part in parts]
 
 
 def _shadows(pane: Pane, patches: _Patches | None) -> Shadows:
