@@ -44,8 +44,8 @@ SLACK_M = 1e-6
 MOST_CODES = 20_000
 """Boxes of one section; more would not be read in time."""
 
-MOST_PATCHES = 32
-"""Patches that are looked at for the shadows of one panel: those that are seen largest."""
+MOST_PATCHES = (32, 512)
+"""Patches that are looked at for the shadows of one panel, those that are seen largest; more where these prove less."""
 
 RETURN_SHARES = (1.0, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5)
 """Parts of the minimum distance that returns are tried to keep, the largest first."""
@@ -239,14 +239,18 @@ class _Maker:
         elements = np.flatnonzero(reachability.verdicts.reshape(-1) == UNREACHABLE)
         patches = _Patches(self.solids.triangles) if case.occlusion == "on" else None
         terrain, bvh = _terrain(case), build_bvh(self.solids.triangles)
-        shadows = {panel: _shadows(case.panes[panel], patches) for panel in set((elements // case.n).tolist())}
-        texts: list[str] = []
-        parts = chunks(len(elements), SECTIONS_PER_CHUNK)
-        for start, stop in chunks(len(parts), 8):
-            monitor.report(say("writing the proof"), start, len(parts))
-            work = [(case, elements[a:b], shadows, terrain, bvh) for a, b in parts[start:stop]]
-            texts += [text for part in run_parallel(_trees, work) for text in part]
-        found = [[e, text] for e, text in zip(elements.tolist(), texts, strict=True) if text]
+        texts: dict[int, str] = {}
+        for most in MOST_PATCHES if patches is not None else (0,):
+            left = elements[np.array([not texts.get(e) for e in elements.tolist()], np.bool_)]
+            shadows = {panel: _shadows(case.panes[panel], patches, most) for panel in set((left // case.n).tolist())}
+            parts = chunks(len(left), SECTIONS_PER_CHUNK)
+            for start, stop in chunks(len(parts), 8):
+                monitor.report(say("writing the proof"), start, len(parts))
+                work = [(case, left[a:b], shadows, terrain, bvh) for a, b in parts[start:stop]]
+                written = [text for part in run_parallel(_trees, work) for text in part]
+                of_these = left[parts[start][0] : parts[stop - 1][1]].tolist()
+                texts |= dict(zip(of_these, written, strict=True))
+        found = [[e, texts[e]] for e in elements.tolist() if texts[e]]
         return {"boxes": found, "patches": [] if patches is None else patches.rows}
 
 
@@ -331,7 +335,7 @@ class _Patches:
         """The table."""
         return [list(patch) for patch in self._numbers]
 
-    def seen_from(self, pane: Pane) -> list[tuple[int, ...]]:
+    def seen_from(self, pane: Pane, most: int) -> list[tuple[int, ...]]:
         """Parts of groups that face a panel's target and stand in front of it, the largest seen first."""
         eye, first = np.array(pane.target), self.starts[:-1]
         rays = self.corners - eye
@@ -340,19 +344,19 @@ class _Patches:
         facing = (np.abs(of_eye) > 1e-3) & ((of_eye * self.of_mean < 0.0) | (np.abs(self.of_mean) < 1e-4))
         away2 = np.where(facing, np.einsum("tck,tck->tc", rays, rays).min(axis=1), np.inf)
         seen = np.bincount(self.group, facing * self.area) / np.maximum(np.minimum.reduceat(away2, first), 1e-6)
-        largest = np.argsort(-np.where(in_front, seen, 0.0), kind="stable")[:MOST_PATCHES]
+        largest = np.argsort(-np.where(in_front, seen, 0.0), kind="stable")[:most]
         parts = [slice(*self.starts[k : k + 2]) for k in largest.tolist() if in_front[k] and seen[k] > 0.0]
         return [tuple(self.order[part][facing[part]].tolist()) for part in parts]
 
 
-def _shadows(pane: Pane, patches: _Patches | None) -> Shadows:
-    """Shadows of all patches as seen from a panel."""
+def _shadows(pane: Pane, patches: _Patches | None, most: int) -> Shadows:
+    """Shadows of the patches that are seen largest from a panel, `most` of them at most."""
     eye = np.array(pane.target)
     if patches is None:
         return no_shadows(eye)
     found: list[tuple[Array, Array]] = []
     numbers = []
-    for patch in patches.seen_from(pane):
+    for patch in patches.seen_from(pane, most):
         chosen = list(patch)
         silhouette = _silhouette(eye, patches.triangles[chosen], patches.vertices[chosen])
         if silhouette is not None:

@@ -39,12 +39,18 @@ def rough(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return z
 
 
+def write_hill(folder: Path) -> Path:
+    """The rough slope as a GeoTIFF about the bundled sites' origin, ellipsoidal heights."""
+    path = folder / "ground.tif"
+    place = {"origin": ORIGIN, "crs": CRS, "transform": transform_at(ORIGIN, CRS, PIXEL_M, HALF)}
+    write_heights(path, rough, size=(2 * HALF, 2 * HALF), **place)
+    return path
+
+
 def measure(context: Context) -> Iterator[Row]:
     """Grids of many steps from one file, legs over each, and plans with and without."""
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "ground.tif"
-        place = {"origin": ORIGIN, "crs": CRS, "transform": transform_at(ORIGIN, CRS, PIXEL_M, HALF)}
-        write_heights(path, rough, size=(2 * HALF, 2 * HALF), **place)
+        path = write_hill(Path(folder))
         yield from _grids(path, STEPS_M[1::3] if context.is_quick else STEPS_M)
         yield from _plans(path, 6.0 if context.is_quick else 15.0)
 

@@ -11,7 +11,7 @@ from random import Random
 
 import pytest
 
-from tests.benchmarks.proof_attacks import attacked
+from tests.benchmarks.proofs import attacked
 from tests.planning.proof.attack import Judge, same, wrongly_proved
 from tests.planning.proof.scenes import files, kept_hut, places
 from tests.planning.proof.tampering import TAMPERINGS, of_kinds, sealed, tampered

@@ -1,6 +1,7 @@
-"""Tampered sites, plans, proofs and missions: what the verifier says of them, and what an exact judge says.
+"""Proofs of plans: their size, what they take to make and to check, and whether both verifiers prove them whole.
 
-And mutants of the verifier: whether anything tells them from it.
+Then tampered sites, plans, proofs and missions: what the verifier says of them, and what an exact judge says. And
+mutants of the verifier: whether anything tells them from it.
 """
 
 from __future__ import annotations
@@ -15,12 +16,98 @@ from pathlib import Path
 from random import Random
 from typing import Literal, NamedTuple
 
-from tests.benchmarks.harness import Benchmark, Context, Row
+from groundstation.services.mission.proof import write_plan_proof
+from groundstation.services.plan.planning import plan_document_site
+from planning.plan import write_plan
+from planning.request import PlanRequest
+from planning.site.bundled import SCENES, write_scene
+from planning.site.file import read_site, write_site
+from planning.site.importing.attach_terrain import TerrainRequest, attach_terrain
+from planning.site.importing.elevation import HeightOptions
+from tests.benchmarks.fresh_process import run_command
+from tests.benchmarks.harness import Benchmark, Context, Row, timer
+from tests.benchmarks.terrain import write_hill
 from tests.planning.proof.attack import Judge, same, wrongly_proved
 from tests.planning.proof.mutants import is_equivalent, mutants, questions, told_by
 from tests.planning.proof.scenes import kept_hut
 from tests.planning.proof.tampering import TAMPERINGS, of_kinds, tampered
-from tests.planning.proof.verifiers import NODE, PYTHON, by_module, by_node, load
+from tests.planning.proof.verifiers import NODE, PLAN, PYTHON, SITE, by_module, by_node, by_program, load
+
+MOST_VIEWS = 560
+"""Views of a plan: two for each panel, but no more."""
+
+MOST_MB, MOST_VERIFIED_S, MOST_OF_PLANNING = 5.0, 60.0, 0.1
+"""What is wanted of the proof of so many views on 280 panels."""
+
+HOUSES = ("bim/office_a.ifc", "bim/curtain_wall_small.ifc")
+CITY = "buildings/ingolstadt_lod3/{}.xml"
+CITY_HOUSES = ("4018106", "4018115")
+
+
+def measure(context: Context) -> Iterator[Row]:
+    """By site: size and time of the proof, times of the verifiers, and what they say."""
+    with tempfile.TemporaryDirectory() as name:
+        for scene, site in _sites(context, Path(name)):
+            yield from _of_site(scene, site)
+
+
+def _sites(context: Context, root: Path) -> Iterator[tuple[str, Path]]:
+    """Names and files of sites, each in a folder of its own."""
+    for number, scene in enumerate(("single-panel", "roof") if context.is_quick else SCENES):
+        folder = root / str(number)
+        folder.mkdir()
+        yield scene, write_scene(scene, folder).rename(folder / SITE)
+    if context.is_quick:
+        return
+    (root / "hill").mkdir()
+    model = read_site(write_scene("office", root / "hill"))
+    wanted = TerrainRequest((write_hill(root),), options=HeightOptions(vertical="ellipsoid"), step_m=1.0)
+    write_site(root / "hill" / SITE, attach_terrain(model, wanted, "hill").model.site)
+    yield "office on a hill", root / "hill" / SITE
+    for house in (*HOUSES, *map(CITY.format, CITY_HOUSES)):
+        folder = root / Path(house).stem
+        folder.mkdir()
+        run_command(["site", "import", context.data(house), "-o", folder / SITE])
+        yield Path(house).name, folder / SITE
+
+
+def _of_site(scene: str, site: Path) -> Iterator[Row]:
+    model = read_site(site)
+    request = PlanRequest(n_views=min(2 * len(model.site.panels), MOST_VIEWS))
+    with timer() as planning_s:
+        planned = plan_document_site(model, request)
+    write_plan(site.with_name(PLAN), planned.plan)
+    with timer() as proving_s:
+        proof = write_plan_proof(site.with_name(PLAN), site, model, planned.prepared.problem.reachability)
+    size_mb, share = proof.stat().st_size / 1e6, proving_s() / planning_s()
+    what = f"{len(planned.plan.viewpoints)} views, {len(model.site.panels)} panels: proof"
+    yield Row(scene, what, size_mb, "MB", target=f"at most {MOST_MB:g} MB", met=size_mb <= MOST_MB)
+    target = f"at most {MOST_OF_PLANNING:g} x"
+    yield Row(scene, "made in", proving_s(), "s", share, "planning", target, share <= MOST_OF_PLANNING)
+    files = {path.name: path.read_bytes() for path in site.parent.iterdir()}
+    with tempfile.TemporaryDirectory() as name:
+        with timer() as python_s:
+            _, claims, _ = by_program(files, Path(name))
+        target = f"at most {MOST_VERIFIED_S:g} s"
+        yield Row(scene, "verifier", python_s(), "s", target=target, met=python_s() <= MOST_VERIFIED_S)
+        n_proved = sum(claim.verdict == "proved" for claim in claims)
+        yield Row(scene, "claims proved", n_proved, f"of {len(claims)}", target="all", met=n_proved == len(claims))
+        if NODE is not None:
+            with timer() as page_s:
+                (page,) = by_node([files], Path(name))
+            yield Row(scene, "its page in Node", page_s(), "s", page_s() / python_s(), "the verifier")
+            otherwise = sum(a != b for a, b in zip(claims, page, strict=True))
+            yield Row(scene, "the page says otherwise of", otherwise, "claims", target="none", met=otherwise == 0)
+
+
+BENCHMARK = Benchmark(
+    "proofs",
+    "Proofs of plans",
+    "Plans as they are made by default, with two views for each panel, 560 at most; their proofs; and what both "
+    "verifiers say of them, each in a process of its own.",
+    measure,
+)
+
 
 N_QUICK, N_FULL = 2, 295
 """Of each kind."""
@@ -74,7 +161,7 @@ def attacked(seeds: range) -> Attacked:
     return found._replace(n_shown=len(shown), otherwise=otherwise)
 
 
-def measure(context: Context) -> Iterator[Row]:
+def measure_attacks(context: Context) -> Iterator[Row]:
     """By kind: what became of the tamperings, and how many claims were wrongly called proved."""
     of_each = N_QUICK if context.is_quick else N_FULL
     n, step = of_each * len(TAMPERINGS), CHUNK * len(TAMPERINGS)
@@ -92,13 +179,13 @@ def measure(context: Context) -> Iterator[Row]:
         yield Row("all kinds", what, otherwise, "tamperings", target="none", met=otherwise == 0)
 
 
-BENCHMARK = Benchmark(
+ATTACKS_BENCHMARK = Benchmark(
     "proof-attacks",
     "Tampered proofs",
     "A small site with its plan, proof and missions is tampered with, and sealed again with right checksums. Each "
     "claim that the verifier still calls proved is judged in exact rational numbers over all triangles. A claim that "
     "is proved and false would count as wrongly proved; what stays proved is true, because the change was harmless.",
-    measure,
+    measure_attacks,
 )
 
 
