@@ -36,8 +36,16 @@ from tests.planning.proof.verifiers import NODE, PLAN, PYTHON, SITE, by_module, 
 MOST_VIEWS = 560
 """Views of a plan: two for each panel, but no more."""
 
-MOST_MB, MOST_VERIFIED_S, MOST_OF_PLANNING = 5.0, 60.0, 0.1
-"""What is wanted of the proof of so many views on 280 panels."""
+PLANNING = "of planning"
+
+WANTED = {
+    ("proof", "MB"): 5.0,
+    ("made in", PLANNING): 0.1,
+    ("verifier", "s"): 60.0,
+    ("claims not proved", "claims"): 0.0,
+    ("the page says otherwise of", "claims"): 0.0,
+}
+"""At most, of the proof of 560 views on 280 panels; by what is measured and its unit."""
 
 HOUSES = ("bim/office_a.ifc", "bim/curtain_wall_small.ifc")
 CITY = "buildings/ingolstadt_lod3/{}.xml"
@@ -45,10 +53,19 @@ CITY_HOUSES = ("4018106", "4018115")
 
 
 def measure(context: Context) -> Iterator[Row]:
-    """By site: size and time of the proof, times of the verifiers, and what they say."""
+    """By site: size and time of the proof, times of the verifiers, and what they say; then the worst of them all."""
+    worst: dict[tuple[str, str], float] = {}
     with tempfile.TemporaryDirectory() as name:
         for scene, site in _sites(context, Path(name)):
-            yield from _of_site(scene, site)
+            for row in _of_site(scene, site):
+                yield row
+                value = row.ratio if row.against == PLANNING else float(row.value)
+                kind = row.what if row.unit != "MB" else "proof", row.against or row.unit
+                worst[kind] = max(worst.get(kind, 0.0), value or 0.0)
+    for (what, unit), value in worst.items():
+        if (what, unit) in WANTED:
+            most = WANTED[what, unit]
+            yield Row("the worst of all", what, value, unit, target=f"at most {most:g}", met=value <= most)
 
 
 def _sites(context: Context, root: Path) -> Iterator[tuple[str, Path]]:
@@ -79,25 +96,21 @@ def _of_site(scene: str, site: Path) -> Iterator[Row]:
     write_plan(site.with_name(PLAN), planned.plan)
     with timer() as proving_s:
         proof = write_plan_proof(site.with_name(PLAN), site, model, planned.prepared.problem.reachability)
-    size_mb, share = proof.stat().st_size / 1e6, proving_s() / planning_s()
     what = f"{len(planned.plan.viewpoints)} views, {len(model.site.panels)} panels: proof"
-    yield Row(scene, what, size_mb, "MB", target=f"at most {MOST_MB:g} MB", met=size_mb <= MOST_MB)
-    target = f"at most {MOST_OF_PLANNING:g} x"
-    yield Row(scene, "made in", proving_s(), "s", share, "planning", target, share <= MOST_OF_PLANNING)
+    yield Row(scene, what, proof.stat().st_size / 1e6, "MB")
+    yield Row(scene, "made in", proving_s(), "s", proving_s() / planning_s(), PLANNING)
     files = {path.name: path.read_bytes() for path in site.parent.iterdir()}
     with tempfile.TemporaryDirectory() as name:
         with timer() as python_s:
             _, claims, _ = by_program(files, Path(name))
-        target = f"at most {MOST_VERIFIED_S:g} s"
-        yield Row(scene, "verifier", python_s(), "s", target=target, met=python_s() <= MOST_VERIFIED_S)
-        n_proved = sum(claim.verdict == "proved" for claim in claims)
-        yield Row(scene, "claims proved", n_proved, f"of {len(claims)}", target="all", met=n_proved == len(claims))
+        yield Row(scene, "verifier", python_s(), "s")
+        yield Row(scene, "claims not proved", sum(each.verdict != "proved" for each in claims), "claims")
         if NODE is not None:
             with timer() as page_s:
                 (page,) = by_node([files], Path(name))
             yield Row(scene, "its page in Node", page_s(), "s", page_s() / python_s(), "the verifier")
             otherwise = sum(a != b for a, b in zip(claims, page, strict=True))
-            yield Row(scene, "the page says otherwise of", otherwise, "claims", target="none", met=otherwise == 0)
+            yield Row(scene, "the page says otherwise of", otherwise, "claims")
 
 
 BENCHMARK = Benchmark(

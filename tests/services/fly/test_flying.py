@@ -123,7 +123,7 @@ def test_the_whole_office_is_flown_as_planned_in_several_sorties(model, autopilo
 def test_two_aircraft_in_the_air_at_once_keep_apart_and_to_the_times_that_planning_allows(autopilot, profile, wind_m_s):
     site = court()
     rules = FlightRules(at_once=2, apart_m=12.0, wind_m_s=wind_m_s)
-    request = PlanRequest(n_views=60, rules=rules, profile_id=profile, time_budget_s=10.0)
+    request = PlanRequest(n_views=60, rules=rules, profile_id=profile, time_budget_s=30.0)
     plan = plan_flight(site, request).plan
     assert {sortie.aircraft for sortie in plan.sorties} == {1, 2}
     flight = fly_plan(plan, site, FlightRequest(autopilot=autopilot, conditions=Conditions(wind_m_s=wind_m_s))).flight
