@@ -30,10 +30,10 @@ FURTHER = {
     "256 px": ("planar", {"width_px": 256}),
     "512 px": ("planar", {"width_px": 512, "views": (50, 100)}),
     "far": ("curved-far", {}),
-    "Reflection MLP": ("planar", {"lights": ("mlp",)}),
-    "joint splats": ("planar", {"lights": ("splats",)}),
+    "Reflection MLP": ("planar", {"lights": ("mlp",), "n_seeds": N_SEEDS}),
+    "joint splats": ("planar", {"lights": ("splats",), "n_seeds": N_SEEDS}),
 }
-"""What else models and flights may be, each with one seed and so many photos: the scene, and what differs there. With
+"""What else models and flights may be, with one seed and so many photos: the scene, and what differs there. With
 512 px a photo takes 4.5 s of a core, and a model some minutes."""
 
 BETTER_DB, FAR_DB = 1.0, 0.2
@@ -112,7 +112,7 @@ def _further(recorded: Sequence[Row]) -> Iterator[Row]:
                 f"{kind} {value:.1f}" for kind, value in result.psnr_db[light].items()
             )
             what = f"{name}: {result.n_views} photos, {result.planner}, unseen views"
-            yield Row(result.scene, what, round(result.mean_db(light), 2), "dB", None, f"{beside} dB", seeds=1)
+            yield Row(result.scene, what, round(result.mean_db(light), 2), "dB", None, f"{beside} dB", seeds=request.n_seeds)
 
 
 def further_request(name: str) -> WorthRequest:
