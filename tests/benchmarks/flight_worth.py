@@ -112,7 +112,9 @@ def _further(recorded: Sequence[Row]) -> Iterator[Row]:
                 f"{kind} {value:.1f}" for kind, value in result.psnr_db[light].items()
             )
             what = f"{name}: {result.n_views} photos, {result.planner}, unseen views"
-            yield Row(result.scene, what, round(result.mean_db(light), 2), "dB", None, f"{beside} dB", seeds=request.n_seeds)
+            yield Row(
+                result.scene, what, round(result.mean_db(light), 2), "dB", None, f"{beside} dB", seeds=request.n_seeds
+            )
 
 
 def further_request(name: str) -> WorthRequest:
