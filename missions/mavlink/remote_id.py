@@ -85,7 +85,8 @@ def operator_number(typed: str) -> OperatorNumber:
     """An operator's number as it was typed.
 
     Numbers of EASA's states are checked: country, length, characters and, where the secret part is typed, too, the
-    checksum. What is none of them is taken as it is where it fits into the message; nothing about it can be proved.
+    checksum. Spaces and the size of letters, which say nothing in them, are mended. What is none of them is taken as
+    it is where it fits into the message; nothing about it can be proved.
 
     Raises
     ------
@@ -93,7 +94,8 @@ def operator_number(typed: str) -> OperatorNumber:
         It begins as one of these numbers and is none, or does not fit.
     """
     text = typed.strip()
-    found = _EU_NUMBER.fullmatch(text)
+    written = "".join(text.split())
+    found = _EU_NUMBER.fullmatch(written[:3].upper() + written[3:].lower())
     if found is None or found[1] not in EU_STATES:
         if text[:3] in EU_STATES and len(text) > 10:
             raise InputError.say(
