@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QCheckBox, QLabel, QLineEdit, QStyle, QStyleOption
 from groundstation.gui.application.translate import translated
 from groundstation.gui.fly.joystick_controller import JoystickBox
 from groundstation.gui.widgets.inputs import Form
-from groundstation.gui.widgets.scrolling import LEAST_SCALE, fitted
+from groundstation.gui.widgets.scrolling import LEAST_SCALE, fitted, scroll_to
 from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.gui.widgets.value_boxes import FileBox, muted
 from groundstation.services.fly.options import FlightSettings
@@ -87,7 +87,10 @@ class SettingsPage(QWidget):
         self.speaks = QCheckBox(self.tr("Warnings are spoken"))
         self._voice_text, self.joystick = muted(""), JoystickBox()
         self._kept = FlightSettings()
-        self.operator, self.serial, self._said = ExampleLine(EXAMPLE), QLineEdit(), QLabel()
+        self.operator, self.serial = ExampleLine(EXAMPLE), QLineEdit()
+        # What is said of a field stands right below it, where it is looked at.
+        said = [QLabel() for _ in range(4)]
+        self._identity_said, self._corrections_said, self._video_said, self._definition_said = said
         self.operator.setToolTip(
             self.tr("For aircraft with remote ID. The secret part proves the checksum, and is neither sent nor kept")
         )
@@ -102,18 +105,20 @@ class SettingsPage(QWidget):
         self.password.setEchoMode(QLineEdit.EchoMode.Password)
         self.password.setToolTip(self.tr("Kept until the program ends, and never written down"))
         self.serial.setToolTip(self.tr("Only where the aircraft's module does not know it"))
-        self._said.setWordWrap(True)
         form = Form()
         form.addRow(self.tr("Battery on board"), self.battery)
         form.addRow(self.tr("Operator number"), self.operator)
         form.addRow(self.tr("Serial number"), self.serial)
+        form.addRow(self._identity_said)
         # Addresses have the whole width: beside its title half of the example that says their form is cut off.
         _add_below(form, self.tr("RTK corrections"), self.corrections)
+        form.addRow(self._corrections_said)
         form.addRow(self.tr("Their password"), self.password)
-        self.video, self._video_said = ExampleLine(VIDEO_EXAMPLE), muted("")
+        self.video = ExampleLine(VIDEO_EXAMPLE)
         self._offered: OfferedVideo | None = None
         self.video.setToolTip(self.tr("The camera's stream, by RTSP, or as an MPEG transport stream by UDP"))
         _add_below(form, self.tr("Video"), self.video)
+        form.addRow(self._video_said)
         self.definition = FileBox(
             self.tr("Choose file ..."),
             self.tr("Camera definition file"),
@@ -125,10 +130,10 @@ class SettingsPage(QWidget):
                 "it; without one, the camera is asked for its own"
             )
         )
-        self._definition_said = QLabel()
-        self._definition_said.setWordWrap(True)
         form.addRow(self.tr("Camera definition"), self.definition)
-        for label in (self._said, self._video_said, self._definition_said):
+        form.addRow(self._definition_said)
+        for label in said:
+            label.setWordWrap(True)
             _say(label, "muted", "")
         layout = QVBoxLayout(self)
         layout.addWidget(self.needs_rtk)
@@ -136,9 +141,6 @@ class SettingsPage(QWidget):
         layout.addWidget(self.speaks)
         layout.addWidget(self._voice_text)
         layout.addLayout(form)
-        layout.addWidget(self._said)
-        layout.addWidget(self._video_said)
-        layout.addWidget(self._definition_said)
         layout.addWidget(self.joystick)
         layout.addStretch(1)
         self.needs_rtk.toggled.connect(self._edited)
@@ -179,9 +181,13 @@ class SettingsPage(QWidget):
             else self.tr("This computer has no speech program: install speech-dispatcher or espeak-ng.")
         )
 
-    def said(self) -> str:
-        """What is said of the numbers that were typed."""
-        return self._said.text()
+    def identity_said(self) -> str:
+        """What is said of the operator's and the aircraft's numbers."""
+        return self._identity_said.text()
+
+    def corrections_said(self) -> str:
+        """What is wrong with the address of the corrections; empty for nothing."""
+        return self._corrections_said.text()
 
     def video_said(self) -> str:
         """What is wrong with the address of the video; empty for nothing."""
@@ -207,7 +213,7 @@ class SettingsPage(QWidget):
         try:
             url = typed_video(self.video.text())
         except InputError as error:
-            _say(self._video_said, "muted", translated(str(error), UnitSystem.METRIC))
+            _say(self._video_said, "error", translated(str(error), UnitSystem.METRIC))
             return
         _say(self._video_said, "muted", "")
         if url != self._kept.video:
@@ -247,16 +253,17 @@ class SettingsPage(QWidget):
             numbers = "" if number is None else number.public, serial_number(serial) if serial else ""
             kept = replace(self._kept, operator=numbers[0], serial_number=numbers[1])
         except InputError as error:
-            _say(self._said, "error", translated(str(error), UnitSystem.METRIC))
+            _say(self._identity_said, "error", translated(str(error), UnitSystem.METRIC))
             return
         if number is None:
-            _say(self._said, "muted", "")
+            _say(self._identity_said, "muted", "")
         elif number.is_proved:
-            _say(self._said, "ok", self.tr("Operator number: its checksum is right."))
+            _say(self._identity_said, "ok", self.tr("Operator number: its checksum is right."))
         elif number.is_eu:
-            _say(self._said, "muted", self.tr("The form is right. With the secret part the checksum can be proved."))
+            text = self.tr("The form is right. With the secret part the checksum can be proved.")
+            _say(self._identity_said, "muted", text)
         else:
-            _say(self._said, "muted", self.tr("No number of an EASA state: nothing about it can be proved."))
+            _say(self._identity_said, "muted", self.tr("No number of an EASA state: nothing about it can be proved."))
         self._kept = kept
         self.operator.setText(kept.operator)
         self.valueChanged.emit(self.value())
@@ -277,9 +284,9 @@ class SettingsPage(QWidget):
             if typed:
                 caster_of(typed)
         except InputError as error:
-            _say(self._said, "error", translated(str(error), UnitSystem.METRIC))
+            _say(self._corrections_said, "error", translated(str(error), UnitSystem.METRIC))
             return
-        _say(self._said, "muted", "")
+        _say(self._corrections_said, "muted", "")
         self._kept = replace(self._kept, corrections=typed)
         self.valueChanged.emit(self.value())
 
@@ -299,3 +306,5 @@ def _say(label: QLabel, role: str, text: str) -> None:
     label.style().polish(label)
     label.setText(text)
     label.setVisible(bool(text))
+    if text:
+        scroll_to(label)

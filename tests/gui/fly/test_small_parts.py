@@ -1,8 +1,10 @@
 """Parts of the Fly tab that need no flight: what is kept for the next start, and the notes."""
 
 import dataclasses
+from functools import partial
 
 import pytest
+from PySide6.QtCore import QPoint
 
 from groundstation.services.fly.options import USUAL_ADDRESS, ConnectionChoice, FlightSettings, LinkKind
 from groundstation.services.jobs.runner import JobRunner
@@ -70,10 +72,10 @@ def test_an_operators_number_is_proved_kept_without_its_secret_and_refused_where
         QApplication.processEvents()
 
     typed(page.operator, "FIN87astrdge12k9-xyz")
-    assert "its checksum is wrong" in page.said()
+    assert "its checksum is wrong" in page.identity_said()
     assert heard == []
     typed(page.operator, "FIN87astrdge12k8-xyz")
-    assert page.said() == "Operator number: its checksum is right."
+    assert page.identity_said() == "Operator number: its checksum is right."
     assert page.operator.text() == heard[-1].operator == "FIN87astrdge12k8"
     typed(page.serial, "1581F5FHB229F0020")
     assert (heard[-1].serial_number, heard[-1].operator) == ("1581F5FHB229F0020", "FIN87astrdge12k8")
@@ -135,7 +137,7 @@ def test_a_caster_is_kept_and_its_password_is_not(application, tmp_path, monkeyp
     for line, text in ((page.corrections, "nowhere"), (page.corrections, "me@h:2101/VRS"), (page.password, "secret")):
         type_into(line, text)
         line.editingFinished.emit()
-    assert "expected USER@HOST:PORT/MOUNTPOINT" not in page.said()
+    assert "expected USER@HOST:PORT/MOUNTPOINT" not in page.corrections_said()
     assert [each.corrections for each in kept] == ["me@h:2101/VRS"]
     assert passwords == ["secret"]
     write_preferences(flight_settings_path(), kept[-1])
@@ -203,9 +205,24 @@ def test_examples_of_addresses_are_read_whole_and_what_says_nothing_takes_no_roo
         assert len(colours_in(line)) > 10, "the example is written"
         line.setText(" ")
         assert len(colours_in(line)) < 10, "the example makes room for what is typed"
-    assert not any(label.isVisible() for label in (page._said, page._video_said, page._definition_said))
-    page.video.setText("nowhere")
-    page.video.editingFinished.emit()
-    assert page.video_said()
-    assert page._video_said.isVisible()
+    said = (page._identity_said, page._corrections_said, page._video_said, page._definition_said)
+    assert not any(label.isVisible() for label in said)
+    # However little room there is, what is wrong with a field is seen: right below it, scrolled to.
+    area.resize(DETAIL_WIDTH_PX, 320)
+    for field, wrong, label in (
+        (page.operator, "FIN87astrdge12k9-xyz", page._identity_said),
+        (page.corrections, "nowhere", page._corrections_said),
+        (page.video, "nowhere", page._video_said),
+    ):
+        field.setText(wrong)
+        field.editingFinished.emit()
+        seen = partial(_is_seen, label, area)
+        turn_until(application, seen)
+        assert label.property("role") == "error"
     area.close()
+
+
+def _is_seen(widget, area):
+    """Whether a widget lies in the height that an area shows; the window makes room for its width."""
+    top = widget.mapTo(area.viewport(), QPoint(0, 0)).y()
+    return widget.isVisible() and top >= 0 and top + widget.height() <= area.viewport().height()
