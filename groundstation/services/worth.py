@@ -18,7 +18,7 @@ from typing import Any, Literal
 import numpy as np
 
 from groundstation.services.fly.flying import FlightRequest, fly_plan
-from groundstation.services.scenes.views import scene_of_request, shots_of_flight
+from groundstation.services.scenes.views import as_written, scene_of_request, shots_of_flight
 from missions.flight.flight_file import write_flight
 from missions.simulator.conditions import Conditions
 from planning.aircraft.catalogue import profile
@@ -35,7 +35,7 @@ from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.tradeoff.runner import ComparisonFiles, Line, Panel, Subject, compare, falling
 from planning.viewpoints.prepare import Prepared, prepare
-from reconstruction.scenes.parameters import SceneRequest
+from reconstruction.scenes.parameters import DEFAULT_POINTS, SceneRequest
 from reconstruction.scenes.photos.flight_views import Shot, planned_shots
 from reconstruction.scenes.record import Scene
 from reconstruction.tradeoff.flight_worth import (
@@ -294,7 +294,7 @@ def kept_folder(request: WorthRequest, out: Path) -> Path:
         There is no such scene, or the folder cannot be made.
     """
     scene, made_from = _scene(request)
-    settings = (request.width_px, request.n_unseen, request.seconds, request.plan_s)
+    settings = (request.width_px, request.n_unseen, request.seconds, request.plan_s, DEFAULT_POINTS)
     parts = (made_from, scene.site.sha256, profile(request.profile_id), settings)
     folder = out / "worth" / f"{scene.name}-{hashlib.sha256(repr(parts).encode()).hexdigest()[:12]}"
     make_folder(folder)
@@ -313,7 +313,8 @@ def run_trial(request: WorthRequest, trial: FlightTrial, folder: Path) -> Flight
     make_folder(place)
     plan = _plan(request, trial, ready, place / "plan.json")
     photographed, shots = place / "photos", _shots(trial, plan, ready, place / "flight.json")
-    photograph(ready.scene, shots, ready.site, request.width_px, photographed)
+    _, companions = as_written(ready.scene.site)
+    photograph(ready.scene, shots, ready.site, request.width_px, photographed, companions=companions)
     unseen = {kind: folder / f"unseen-{kind}" / "photos" for kind in UNSEEN_KINDS}
     scores: dict[str, dict[str, float]] = dict(known.psnr_db) if known else {}
     for light in request.lights:

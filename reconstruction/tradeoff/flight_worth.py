@@ -11,6 +11,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Literal, get_args
 
 import numpy as np
@@ -45,9 +46,6 @@ EVERY, CHOICE_S = 3, 8.0
 HELD_OUT = 1e-3
 """Share of a flight's photos, at least one, that joint splats do not learn from."""
 
-N_POINTS = 5000
-"""That splats start from."""
-
 
 def unseen_views(kind: UnseenKind, prepared: Prepared, n: int) -> ViewpointArrays:
     """About `n` views of a kind, the same ones each time.
@@ -77,9 +75,21 @@ def shots_of(views: ViewpointArrays) -> tuple[Shot, ...]:
 
 
 def photograph(
-    scene: Scene, shots: Sequence[Shot], prepared: Prepared, width_px: int, folder: Path, monitor: Monitor = QUIET
+    scene: Scene,
+    shots: Sequence[Shot],
+    prepared: Prepared,
+    width_px: int,
+    folder: Path,
+    monitor: Monitor = QUIET,
+    *,
+    companions: Mapping[str, bytes] = MappingProxyType({}),
 ) -> Path:
     """Photos of shots, with what effects the scene calls for; those that are in the folder already stay.
+
+    Parameters
+    ----------
+    companions
+        Content of other files that belong into the folder, by their names: splats begin at the site's surfaces.
 
     Raises
     ------
@@ -89,7 +99,7 @@ def photograph(
         From `monitor`.
     """
     photos = posed_photos(shots, lens_of(prepared.problem.model.camera, width_px), folder / "images")
-    render_photo_folder(PhotoJob(scene, photos, RenderSettings(), {}, n_points=N_POINTS), folder, 1, monitor)
+    render_photo_folder(PhotoJob(scene, photos, RenderSettings(), {}, companions), folder, 1, monitor)
     return folder
 
 
