@@ -127,6 +127,10 @@ LEAST_POINTS = 20
 NEARER_M = 0.5
 """That a surface may be before a point which it does not hide: coarse models are off by as much."""
 
+CELLS, FRONT = 8, 1.2
+"""Where no mesh hides points: cells along a photo's longer side, and times as far as the nearest point of a cell up to
+which others in it count."""
+
 ROUNDS = 12
 """Of medians in turn: gains have come to rest by then."""
 
@@ -382,6 +386,11 @@ def _logarithms(source: PhotoSet, photo: PosedPhoto, points_enu_m: Array, caster
     pixels = photo.pixels(points_enu_m[rows])
     x = np.clip((pixels[:, 0] * size[0] / lens.width_px).astype(np.int64), 0, size[0] - 1)
     y = np.clip((pixels[:, 1] * size[1] / lens.height_px).astype(np.int64), 0, size[1] - 1)
+    if caster is None:
+        distances = np.linalg.norm(points_enu_m[rows] - photo.pose.position_enu_m, axis=1)
+        across, down = CELLS * x // max(size), CELLS * y // max(size)
+        is_first = _is_in_front(across + CELLS * down, distances)
+        rows, pixels, x, y = rows[is_first], pixels[is_first], x[is_first], y[is_first]
     values = display[y, x]
     is_told = ((values > DARKEST) & (values < BRIGHTEST)).all(axis=1)
     if photo.mask is not None:
@@ -394,6 +403,14 @@ def _logarithms(source: PhotoSet, photo: PosedPhoto, points_enu_m: Array, caster
     known = source.own_exposures.get(photo.name, 1.0)
     found[rows[is_told]] = np.log(linear[is_told] / known)
     return found
+
+
+def _is_in_front(cells: NDArray[np.int64], distances_m: Array) -> NDArray[np.bool_]:
+    """Which points are about as near as the nearest in their cell of a photo: others may be hidden."""
+    _, cells = np.unique(cells, return_inverse=True)
+    nearest = np.full(cells.max() + 1, np.inf)
+    np.minimum.at(nearest, cells, distances_m)
+    return np.asarray(distances_m <= FRONT * nearest[cells] + NEARER_M)
 
 
 def _gains(seen: Array) -> Array:
