@@ -261,7 +261,7 @@ def test_same_seed_gives_the_same_plan_whatever_the_number_of_threads(
 
 @pytest.mark.slow
 def test_improved_plans_repeat_too_when_the_search_ends_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
-    greedy = GreedyParameters(n_candidates=300)
+    greedy = GreedyParameters(objective="sections", n_candidates=300)
     request = PlanRequest(n_views=3, greedy=greedy, time_budget_s=600.0)
     model = SCENES["single-panel"]()
     first = plan_flight(model, request)

@@ -303,7 +303,7 @@ def test_hidden_points_and_clipped_pixels_tell_nothing(tmp_path):
     np.testing.assert_allclose(np.log(hidden.gains), true, atol=0.05)
     assert gains_from_points(source, source.photos, BEHIND, wall).n_told == 0
     # Without a mesh nearer points say which may be hidden, however many these are.
-    behind = np.concatenate([POINTS, *(BEHIND + (0.0, off_m, 0.1 * off_m) for off_m in range(4))])
+    behind = np.concatenate([POINTS, *(BEHIND + np.array((0.0, off_m, 0.1 * off_m)) for off_m in range(4))])
     hidden = gains_from_points(source, source.photos, behind, empty_mesh())
     np.testing.assert_allclose(np.log(hidden.gains), true, atol=0.05)
 
