@@ -13,6 +13,7 @@ from groundstation.gui.plan.plan_controller import method_name
 from groundstation.gui.widgets.inputs import ChoiceBox, Form, QuantityBox
 from groundstation.gui.widgets.parameter_form import ParameterRow, add_rows, rows_of, tip_of, title_of
 from groundstation.gui.widgets.questions import choose_file
+from groundstation.gui.widgets.scrolling import scroll_to
 from groundstation.services.units import UnitSystem, length_unit, sampling_unit
 from planning.aircraft.catalogue import Profile, profile, profiles
 from planning.base.errors import GroundStationError
@@ -309,8 +310,11 @@ class PlanForm(QWidget):
             self.valueChanged.emit(request)
 
     def _say_wrong(self, text: str) -> None:
+        is_new = bool(text) and not self._wrong.text()
         self._wrong.setText(text)
         self._wrong.setVisible(bool(text))
+        if is_new:
+            scroll_to(self._wrong)
 
     def _show_goal(self) -> None:
         """Only the goal chosen is shown, and only what its limit needs."""
