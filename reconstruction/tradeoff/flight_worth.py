@@ -99,7 +99,7 @@ def photograph(
         From `monitor`.
     """
     photos = posed_photos(shots, lens_of(prepared.problem.model.camera, width_px), folder / "images")
-    render_photo_folder(PhotoJob(scene, photos, RenderSettings(), {}, companions), folder, 1, monitor)
+    render_photo_folder(PhotoJob(scene, photos, RenderSettings(), {}, dict(companions)), folder, 1, monitor)
     return folder
 
 
