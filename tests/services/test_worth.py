@@ -23,6 +23,8 @@ from groundstation.services.worth import (
 )
 from planning.base.errors import InputError
 from planning.plan import ViewpointArrays
+from reconstruction.light.photo_set import read_photo_set
+from reconstruction.splats.surfels import known_scene
 from reconstruction.tradeoff.flight_worth import shots_of
 
 
@@ -131,6 +133,10 @@ def test_a_flight_is_planned_flown_photographed_and_learned_from(tmp_path):
     assert all(10.0 < float(row["db"]) < 50.0 and float(row["minutes"]) > 0.5 for row in rows)
     assert all(path.is_file() for path in compared.paths)
     assert worth_tradeoff(request, tmp_path).found == compared.found
+    # What a data set of such a flight has for splats to begin at, and to hide points by.
+    flights = sorted(tmp_path.glob("worth/*/*-4-*/photos"))
+    assert len(flights) == 4
+    assert all(len(known_scene(read_photo_set(flight)).mesh.triangles) > 0 for flight in flights)
     # Another light of the same flights learns from the photos that are there.
     photos = sorted(tmp_path.glob("worth/*/*/photos/images/*"))
     taken = [path.stat().st_mtime_ns for path in photos]
