@@ -11,7 +11,6 @@ import json
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -325,6 +324,7 @@ class _Patches:
         means = np.add.reduceat(self.corners.mean(axis=1), self.starts[:-1]) / sizes[:, None]
         self.of_mean = ((means[self.group] - self.corners[:, 0]) * self.normals).sum(axis=1)
         self._numbers: dict[tuple[int, ...], int] = {}
+        self._borders: dict[tuple[tuple[int, ...], bytes], tuple[Array, Array, Array] | None] = {}
 
     def number(self, patch: tuple[int, ...]) -> int:
         """Of a patch in the table."""
@@ -334,6 +334,27 @@ class _Patches:
     def rows(self) -> list[list[int]]:
         """The table."""
         return [list(patch) for patch in self._numbers]
+
+    def border(self, patch: tuple[int, ...], turned: bytes) -> tuple[Array, Array, Array] | None:
+        """Of a patch, its triangles turned or not: inward normals with a corner, starts and ends of the edges left.
+
+        A facade's panels see most patches by the same triangles, turned the same way. None where an edge is there
+        twice.
+        """
+        if (patch, turned) not in self._borders:
+            order = np.where(np.frombuffer(turned, np.bool_)[:, None], [0, 2, 1], [0, 1, 2])
+            rows = np.array(patch)[:, None]
+            ring, numbers = self.triangles[rows, order], self.vertices[rows, order]
+            normals = _cross(ring[:, 1] - ring[:, 0], ring[:, 2] - ring[:, 0])
+            normals /= np.sqrt(np.einsum("tk,tk->t", normals, normals))[:, None]
+            a, b = numbers.ravel(), np.roll(numbers, -1, axis=1).ravel()
+            n = int(numbers.max()) + 1
+            kept = ~np.isin(a * n + b, b * n + a)
+            starts, ends = ring.reshape(-1, 3)[kept], np.roll(ring, -1, axis=1).reshape(-1, 3)[kept]
+            is_once = len(np.unique(a * n + b)) == len(a)
+            faces = np.concatenate([normals, ring[:, 0]], axis=1)
+            self._borders[patch, turned] = (faces, starts, ends) if is_once else None
+        return self._borders[patch, turned]
 
     def seen_from(self, pane: Pane, most: int) -> list[tuple[int, ...]]:
         """Parts of groups that face a panel's target and stand in front of it, the largest seen first."""
@@ -357,8 +378,7 @@ def _shadows(pane: Pane, patches: _Patches | None, most: int) -> Shadows:
     found: list[tuple[Array, Array]] = []
     numbers = []
     for patch in patches.seen_from(pane, most):
-        chosen = list(patch)
-        silhouette = _silhouette(eye, patches.triangles[chosen], patches.vertices[chosen])
+        silhouette = _silhouette(eye, patch, patches)
         if silhouette is not None:
             found.append(silhouette)
             numbers.append(patches.number(patch))
@@ -368,50 +388,23 @@ def _shadows(pane: Pane, patches: _Patches | None, most: int) -> Shadows:
     return Shadows(eye, arrays[0], starts[0], arrays[1], starts[1], np.array(numbers, np.int64))
 
 
-def _silhouette(eye: Array, triangles: Array, vertices: NDArray[np.int64]) -> tuple[Array, Array] | None:
-    """Faces and silhouette of a patch, as the verifier finds them; None where it would refuse it.
-
-    Parameters
-    ----------
-    triangles
-        Shape (t, 3, 3).
-    vertices
-        Numbers of their corners, shape (t, 3); corners at one place have one number.
-    """
-    rays = triangles - eye
+def _silhouette(eye: Array, patch: tuple[int, ...], patches: _Patches) -> tuple[Array, Array] | None:
+    """Faces and planes of the silhouette of a patch, as the verifier finds them; None where it would refuse it."""
+    rays = patches.triangles[list(patch)] - eye
     sizes = np.sqrt(np.einsum("tck,tck->tc", rays, rays))
     volumes = np.einsum("tk,tk->t", _cross(rays[:, 0], rays[:, 1]), rays[:, 2])
     if (np.abs(volumes) < 1e-8 * sizes.prod(axis=1)).any():
         return None
-    is_turned = volumes < 0.0
-    order = np.where(is_turned[:, None], [0, 2, 1], [0, 1, 2])
-    rows = np.arange(len(triangles))[:, None]
-    ring, numbers = triangles[rows, order], vertices[rows, order]
-    normals = _cross(ring[:, 1] - ring[:, 0], ring[:, 2] - ring[:, 0])
-    normals /= np.sqrt(np.einsum("tk,tk->t", normals, normals))[:, None]
-    if (rays.reshape(-1, 3) @ normals[0] < 2.0 * SLACK_M).any():
+    border = patches.border(patch, (volumes < 0.0).tobytes())
+    if border is None:
         return None
-    kept = _outline(numbers.tobytes())
-    if kept is None:
+    faces, starts, ends = border
+    if (rays.reshape(-1, 3) @ faces[0, :3] < 2.0 * SLACK_M).any():
         return None
-    starts, ends = ring.reshape(-1, 3)[kept] - eye, np.roll(ring, -1, axis=1).reshape(-1, 3)[kept] - eye
+    starts, ends = starts - eye, ends - eye
     planes = _cross(starts, ends)
     planes /= np.sqrt(np.einsum("ek,ek->e", starts, starts) * np.einsum("ek,ek->e", ends, ends))[:, None]
-    return np.concatenate([normals, ring[:, 0]], axis=1), planes
-
-
-@lru_cache(maxsize=1024)
-def _outline(numbers: bytes) -> NDArray[np.bool_] | None:
-    """Which edges of triangles, three corners each, have no neighbour; None where one is there twice.
-
-    A facade's panels see most patches by the same triangles, turned the same way.
-    """
-    corners = np.frombuffer(numbers, np.int64).reshape(-1, 3)
-    a, b = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
-    n = int(corners.max()) + 1
-    if len(np.unique(a * n + b)) < len(a):
-        return None
-    return ~np.isin(a * n + b, b * n + a)
+    return faces, planes
 
 
 def _cross(a: Array, b: Array) -> Array:
