@@ -524,8 +524,8 @@ class Case:
         return f"at least {covered:g} of {total} sections are covered, occlusion {self.occlusion}"
 
     def reachable(self) -> str:
-        bound = number(get(self.plan, "coverage", dict), "reachable_upper_bound")
         total, most, done, shown = len(self.panes) * self.n, len(self.panes) * len(self.views), set(), 0
+        bound = number(get(self.plan, "coverage", dict), "reachable_upper_bound")
         for row in get(self.proof, "boxes", list):
             done.add(place_in(row[0], total, "boxes"))
             self._exclude(int(row[0]), row[1])

@@ -306,5 +306,6 @@ def _say(label: QLabel, role: str, text: str) -> None:
     label.style().polish(label)
     label.setText(text)
     label.setVisible(bool(text))
-    if text:
+    # What a vehicle offers by itself moves nothing under the pilot's hands.
+    if role == "error":
         scroll_to(label)
