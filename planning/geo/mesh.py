@@ -399,8 +399,7 @@ def closed_parts(corners_enu_m: NDArray[np.float64]) -> NDArray[np.int64]:
     n = len(corners_enu_m)
     if n == 0:
         return np.zeros(0, np.int64)
-    _, vertex = np.unique(corners_enu_m.reshape(-1, 3).round(6), axis=0, return_inverse=True)
-    triangles = vertex.reshape(n, 3)
+    triangles = _row_numbers(corners_enu_m.reshape(-1, 3).round(6)).reshape(n, 3)
     degenerate = (
         (triangles[:, 0] == triangles[:, 1])
         | (triangles[:, 1] == triangles[:, 2])
@@ -412,8 +411,8 @@ def closed_parts(corners_enu_m: NDArray[np.float64]) -> NDArray[np.int64]:
     edges, owner = edges[kept], owner[kept]
     if len(edges) == 0:
         return np.full(n, -1, np.int64)
-    _, edge, count = np.unique(edges, axis=0, return_inverse=True, return_counts=True)
-    edge = edge.ravel()
+    edge = _row_numbers(edges)
+    count = np.bincount(edge)
     n_edges = len(count)
     graph = coo_array((np.ones(len(edge)), (owner, n + edge)), shape=(n + n_edges, n + n_edges))
     _, label = connected_components(graph, directed=False)
@@ -421,3 +420,12 @@ def closed_parts(corners_enu_m: NDArray[np.float64]) -> NDArray[np.int64]:
     part = np.where(np.isin(label[:n], open_labels) | degenerate, -1, label[:n])
     _, compact = np.unique(part, return_inverse=True)
     return (compact - (1 if (part == -1).any() else 0)).astype(np.int64).ravel()
+
+
+def _row_numbers(rows: NDArray[Any]) -> NDArray[np.int64]:
+    """Equal numbers for equal rows, from 0 on; column by column, which is several times as fast as whole rows."""
+    numbers = np.zeros(len(rows), np.int64)
+    for column in rows.T:
+        values, place = np.unique(column, return_inverse=True)
+        _, numbers = np.unique(numbers * len(values) + place, return_inverse=True)
+    return numbers

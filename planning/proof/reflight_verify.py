@@ -44,7 +44,7 @@ class Refused(Exception):  # noqa: N818
         super().__init__(text)
         self.verdict = verdict
 
-def demand(holds: bool, text: str, verdict: str = NOT_PROVED) -> None:
+def demand(holds: object, text: str, verdict: str = NOT_PROVED) -> None:
     if not holds:
         raise Refused(text, verdict)
 
@@ -106,9 +106,9 @@ def read_ply(content: bytes) -> list[Triangle]:
     head, _, body = content.partition(b"end_header\n")
     found = re.fullmatch(PLY, head)
     n = int(found[1]) if found else len(content)
-    is_whole = found is not None and len(body) == 12 * n + 13 * int(found[2])
-    demand(is_whole, "the mesh is no binary PLY file of triangles alone")
-    vertices = [vector(list(xyz), "vertex") for xyz in struct.iter_unpack("<3f", body[: 12 * n])]
+    demand(found and len(body) == 12 * n + 13 * int(found[2]), "the mesh is no binary PLY file of triangles alone")
+    vertices = list(struct.iter_unpack("<3f", body[: 12 * n]))
+    demand(all([abs(x) <= 1e5 for xyz in vertices for x in xyz]), "'vertex' has not 3 coordinates up to 100000")
     faces = list(struct.iter_unpack("<B3I", body[12 * n :]))
     demand(all([sides == 3 and max(a, b, c) < n for sides, a, b, c in faces]), "a face of the mesh is no triangle")
     return [(vertices[a], vertices[b], vertices[c]) for _, a, b, c in faces]
