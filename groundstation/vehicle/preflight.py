@@ -40,7 +40,21 @@ REMOTE_ID_S = 3.0
 MAX_TOLD = 3
 """Zones that a line of the list names: the check before has said all."""
 
-FIX_NAMES = {0: "none", 1: "none", 2: "2-D", 3: "3-D", 4: "differential", 5: "RTK float", 6: "RTK fixed", 7: "static"}
+_FIX_NAMES = (
+    say("no fix"),
+    say("no fix"),
+    say("2-D"),
+    say("3-D"),
+    say("differential"),
+    say("RTK float"),
+    say("RTK fixed"),
+    say("static"),
+)  # by GPS_FIX_TYPE
+
+
+def fix_name(fix_type: int) -> str:
+    """What a receiver's kind of fix is called; its number where MAVLink has no such kind."""
+    return _FIX_NAMES[fix_type] if 0 <= fix_type < len(_FIX_NAMES) else str(fix_type)
 
 
 class Verdict(Enum):
@@ -241,13 +255,12 @@ def _gnss(state: VehicleState, now_s: float, needs_rtk: bool) -> PreflightCheck:
     if state.fix is None or state.fix.age_s(now_s) > STALE_S:
         return PreflightCheck("gnss", Verdict.WAIT, say("the GNSS receiver is silent"))
     fix, wanted = state.fix.value, RTK_FLOAT if needs_rtk else FIX_3D
-    name = FIX_NAMES.get(fix.fix_type, str(fix.fix_type))
-    text = say("fix: {}, {} satellites", name, fix.n_satellites)
+    text = say("fix: {}, {} satellites", fix_name(fix.fix_type), fix.n_satellites)
     if fix.horizontal_accuracy_m is not None:
         text += say(", {:.2f} m", fix.horizontal_accuracy_m)
     verdict = Verdict.OK if fix.fix_type >= wanted else Verdict.WAIT
     if verdict is Verdict.WAIT:
-        text += say("; {} is needed", FIX_NAMES[wanted])
+        text += say("; {} is needed", fix_name(wanted))
     return PreflightCheck("gnss", verdict, text, float(fix.fix_type), float(wanted))
 
 

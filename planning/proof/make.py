@@ -51,6 +51,9 @@ RETURN_SHARES = (1.0, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5)
 
 SECTIONS_PER_CHUNK = 16
 
+PAIRS_PER_CHUNK = 50_000
+"""Of views and panels that are looked at together."""
+
 
 def proof_path(plan_path: Path) -> Path:
     """Where the proof of a plan stands: beside it, with the ending `.proof`."""
@@ -273,14 +276,20 @@ def _best_views(case: Case) -> tuple[NDArray[np.int64], ...]:
     c, normal, t, b = (np.array([getattr(pane, name) for pane in panes]) for name in ("c", "n", "t", "b"))
     corners = np.array([pane.corners for pane in panes])
     sines, cosines = np.array([case.angle(k) for k in range(4 * rings + 1)]).T
+    places = np.array([place for _, place, _, _ in case.views]).reshape(-1, 3)
+    heading, pitch = np.radians([view[2:] for view in case.views]).reshape(-1, 2).T
+    forward = np.stack([np.cos(pitch) * np.sin(heading), np.cos(pitch) * np.cos(heading), np.sin(pitch)], axis=1)
+    right = np.stack([np.cos(heading), -np.sin(heading), np.zeros(len(places))], axis=1)
+    axes = np.stack([forward, right, np.cross(right, forward)], axis=2)
     found = [(np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int64))]
-    for number, (_, place, heading_deg, pitch_deg) in enumerate(case.views):
-        heading, pitch = math.radians(heading_deg), math.radians(pitch_deg)
-        forward = np.array([math.cos(pitch) * math.sin(heading), math.cos(pitch) * math.cos(heading), math.sin(pitch)])
-        right = np.array([math.cos(heading), -math.sin(heading), 0.0])
-        d = np.array(place) - c
+    for start, stop in chunks(len(places), max(1, PAIRS_PER_CHUNK // len(panes))):
+        d = places[start:stop, None] - c
+        in_picture = _in_picture(case, -d @ axes[start:stop])
+        number, panel = np.nonzero(np.minimum(case.far_m - np.linalg.norm(d, axis=2), in_picture) > SLACK_M)
+        d = d[number, panel]
+        number += start
         away = np.linalg.norm(d, axis=1)
-        along, u, v = ((d * axis).sum(axis=1) for axis in (normal, t, b))
+        along, u, v = ((d * axis[panel]).sum(axis=1) for axis in (normal, t, b))
         theta = np.arccos(np.clip(along / np.maximum(away, 1e-12), -1.0, 1.0))
         ring = np.clip((theta / (0.5 * math.pi) * rings).astype(int), 0, rings - 1)
         sector = np.clip(
@@ -291,20 +300,24 @@ def _best_views(case: Case) -> tuple[NDArray[np.int64], ...]:
         slack = np.minimum(slack, sines[sector + 1] * u - cosines[sector + 1] * v)
         slack = np.where(ring > 0, np.minimum(slack, cosines[ring] * away - along), slack)
         slack = np.minimum(slack, along - cosines[ring + 1] * away)
-        panels = np.flatnonzero(slack > SLACK_M)
-        points = np.concatenate([c[panels, None], corners[panels]], axis=1) if case.whole else c[panels, None]
-        depth, across, upwards = (
-            (points - np.array(place)) @ axis for axis in (forward, right, np.cross(right, forward))
-        )
-        in_picture = np.minimum(case.half[0] * depth - np.abs(across), case.half[1] * depth - np.abs(upwards))
-        slack = np.minimum(slack[panels], np.minimum(depth, in_picture).min(axis=1))
+        points = np.concatenate([c[panel, None], corners[panel]], axis=1) if case.whole else c[panel, None]
+        in_picture = _in_picture(case, (points - places[number, None]) @ axes[number])
+        slack = np.minimum(slack, in_picture.min(axis=1))
         kept = np.flatnonzero(slack > SLACK_M)
-        elements = panels[kept] * n + ring[panels[kept]] * 4 * rings + sector[panels[kept]]
-        found.append((elements, slack[kept], np.full(len(kept), number)))
+        elements = panel[kept] * n + ring[kept] * 4 * rings + sector[kept]
+        found.append((elements, slack[kept], number[kept]))
     elements, slacks, views = (np.concatenate(each) for each in zip(*found, strict=True))
     order = np.lexsort((views, -slacks, elements))
     elements, starts = np.unique(elements[order], return_index=True)
     return elements, np.append(starts, len(order)), views[order]
+
+
+def _in_picture(case: Case, points: Array) -> Array:
+    """How far points are inside a picture, of their depth, across and upwards, shape (..., 3)."""
+    depth, across, upwards = np.moveaxis(points, -1, 0)
+    sides = np.minimum(case.half[0] * depth - np.abs(across), case.half[1] * depth - np.abs(upwards))
+    inside: Array = np.minimum(depth, sides)
+    return inside
 
 
 class _Patches:

@@ -25,6 +25,7 @@ from PySide6.QtWidgets import (
     QDialog,
     QLabel,
     QLineEdit,
+    QListView,
     QMenu,
     QPlainTextEdit,
     QTabBar,
@@ -45,6 +46,9 @@ QT_GERMAN = {"Yes": ("Ja",), "No": ("Nein",), "OK": ("OK",), "Cancel": ("Abbrech
 
 PATIENCE_S = 240.0
 
+N_ROWS_READ = 100
+"""Of a list or table, when its language is looked at."""
+
 
 @cache
 def german() -> dict[str, tuple[str, ...]]:
@@ -54,6 +58,27 @@ def german() -> dict[str, tuple[str, ...]]:
         source, translation = message.findtext("source", ""), message.findtext("translation", "")
         found.setdefault(plain(source), []).append(plain(translation))
     return {source: tuple(texts) for source, texts in found.items()}
+
+
+@cache
+def _english() -> tuple[dict[str, str], re.Pattern[str]]:
+    """English texts of more than one word that German has other words for: without gaps, and a pattern of the others."""
+    texts = [source for source, found in german().items() if " " in source and source not in found]
+    whole = [text for text in texts if not _GAP.search(text)]
+    # A text of little but gaps would be found in anything.
+    with_gaps = [
+        text for text in texts if _GAP.search(text) and len(re.findall("[A-Za-z]{3,}", _GAP.sub("", text))) > 2
+    ]
+    return {text.lower(): text for text in whole}, re.compile("|".join(map(_pattern, with_gaps)), re.IGNORECASE)
+
+
+_GAP = re.compile(r"\{\d[^}]*\}")
+
+
+def is_english(line: str) -> bool:
+    """Whether a line is an English text that German has other words for."""
+    whole, with_gaps = _english()
+    return line.lower() in whole or with_gaps.fullmatch(line) is not None
 
 
 def plain(text: str) -> str:
@@ -269,7 +294,13 @@ class Pilot:
         turn_until_idle(self.application, self.controller, PATIENCE_S)
 
     def see(self, name: str) -> None:
-        """Take a picture of the screen, where pictures are wanted."""
+        """Look at the window: all is in its language. Take a picture of the screen, where pictures are wanted."""
+        if self.language is Language.GERMAN:
+            texts = {
+                line for each in self._visible(QWidget) for text in _all_texts_of(each) for line in text.splitlines()
+            }
+            left = sorted(filter(is_english, texts))
+            assert not left, f"on “{name}” stands in English: {left}"
         if PICTURES:
             self._n_pictures += 1
             end = time.perf_counter() + 0.3
@@ -290,6 +321,26 @@ def _text_of(widget: QWidget) -> str:
     if isinstance(widget, QPlainTextEdit):
         return widget.toPlainText()
     return ""
+
+
+def _all_texts_of(widget: QWidget) -> Iterator[str]:
+    """What can be read on a widget, also where one points at it, opens it or has not yet filled it in."""
+    yield _text_of(widget)
+    yield plain(widget.toolTip())
+    yield from (plain(action.text()) for action in widget.actions())
+    if isinstance(widget, QLineEdit):
+        yield widget.placeholderText()
+    if isinstance(widget, QTabBar):
+        yield from (plain(widget.tabText(k)) for k in range(widget.count()))
+    if isinstance(widget, QComboBox):
+        yield from (widget.itemText(k) for k in range(widget.count()))
+    if isinstance(widget, QAbstractItemView) and (model := widget.model()) is not None:
+        rows = min(model.rowCount(), N_ROWS_READ)
+        columns = range(1 if isinstance(widget, QListView) else model.columnCount())
+        places = [model.index(row, column) for row in range(rows) for column in columns]
+        for role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
+            yield from (str(place.data(role) or "") for place in places)
+            yield from (str(model.headerData(k, Qt.Orientation.Horizontal, role) or "") for k in columns)
 
 
 def _pattern(template: str) -> str:

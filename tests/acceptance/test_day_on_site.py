@@ -96,6 +96,11 @@ def _export_and_read_back(pilot):
     pilot.tab("Mission")
     pilot.idle()
     pilot.see("mission")
+    pilot.press("Check")
+    pilot.idle()
+    pilot.see("proved")
+    words = pilot.words("proved by an independent check: all {0} claims on this plan")[0]
+    assert words.partition("{0}")[0][1:] in pilot.says()
     pilot.press("Export mission files ...")
     pilot.until(lambda: pilot.button("Write ...").isEnabled(), "the files are ready")
     pilot.see("export")

@@ -22,13 +22,14 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from groundstation.gui.application.translate import translated
 from groundstation.gui.widgets.scrolling import FittedLine, scrolled
 from groundstation.gui.widgets.tab_order import set_enabled
 from groundstation.gui.widgets.table_view import Column, RowModel, table_of
 from groundstation.gui.widgets.theme import colours
 from groundstation.services.fly.events import FlightEnded, LinkState, LiveView, PhotoCounted, Readouts, ViewState
 from groundstation.services.units import UnitSystem, length_unit, minutes_text, per_cent, speed_unit
-from groundstation.vehicle.preflight import FIX_NAMES
+from groundstation.vehicle.preflight import fix_name
 from groundstation.vehicle.state import Angles
 from missions.flight.outcome import FlightReport, Reason, ViewOutcome
 
@@ -602,7 +603,7 @@ class ReadoutsView(QWidget):
         self._tiles["photos"].set_text(
             photos, "" if n_missing == 0 else "warning", self.tr("{0} missing").format(n_missing) if n_missing else ""
         )
-        fix = UNKNOWN if shown.fix_type is None else FIX_NAMES.get(shown.fix_type, str(shown.fix_type))
+        fix = UNKNOWN if shown.fix_type is None else translated(fix_name(shown.fix_type), self._units)
         for name, text, code in (
             ("height", UNKNOWN if shown.height_m is None else length.text(shown.height_m), "airspace"),
             ("speed", UNKNOWN if shown.speed_m_s is None else speed.text(shown.speed_m_s), "off-path"),

@@ -23,6 +23,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.application.translate import translated_finding
 from groundstation.gui.map.map_view import MapView
 from groundstation.gui.mission.export_dialog import ExportDialog, SendDialog
 from groundstation.gui.mission.mission_controller import MissionController, Proved
@@ -130,7 +131,7 @@ class FindingsView(QWidget):
         self._say_state(self.tr("Checking ..."))
 
     def set_proof(self, finding: Finding | None, *, is_proving: bool = False) -> None:
-        """Show what an independent check says of the plan as it is now; None where none did."""
+        """Show what an independent check says of the plan as it is now, in the window's language; None: nothing."""
         text = self.tr("Being proved ...") if is_proving else ""
         if finding is not None and not is_proving:
             text = finding.message[:1].upper() + finding.message[1:]
@@ -559,7 +560,8 @@ class MissionPage(QObject):
             and proved.plan is self.controller.plan
             and proved.site_model is self._context.document.site
         )
-        self.findings.set_proof(proved.finding if proved is not None and is_fresh else None, is_proving=is_proving)
+        shown = translated_finding(proved.finding, self._context.units) if proved is not None and is_fresh else None
+        self.findings.set_proof(shown, is_proving=is_proving)
 
     def _take_preflight(self, found: Preflight) -> None:
         self._preflight = found
@@ -618,3 +620,4 @@ class MissionPage(QObject):
     def _show_units(self, units: UnitSystem) -> None:
         for widget in (self.findings, self.lists, self.sorties):
             widget.set_units(units)
+        self._show_proof()

@@ -7757,6 +7757,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>1 Akku</translation>
     </message>
     <message>
+        <source>2-D</source>
+        <translation>2D</translation>
+    </message>
+    <message>
+        <source>3-D</source>
+        <translation>3D</translation>
+    </message>
+    <message>
         <source>; with take-off at {0} it would be {1}</source>
         <translation>; mit Start um {0} wären es {1}</translation>
     </message>
@@ -7911,6 +7919,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>QGroundControl (.plan)</source>
         <translation>QGroundControl (.plan)</translation>
+    </message>
+    <message>
+        <source>RTK fixed</source>
+        <translation>RTK fixiert</translation>
+    </message>
+    <message>
+        <source>RTK float</source>
+        <translation>RTK Float</translation>
     </message>
     <message>
         <source>Read photos</source>
@@ -8615,6 +8631,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>device: &apos;gpu&apos; is asked for, and {0}; leave it out</source>
         <translation>device: „gpu“ ist verlangt, und {0}; lassen Sie es weg</translation>
+    </message>
+    <message>
+        <source>differential</source>
+        <translation>differentiell</translation>
     </message>
     <message>
         <source>disconnected</source>
@@ -10699,6 +10719,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>keine Fehler; Warnungen: {0}</translation>
     </message>
     <message>
+        <source>no fix</source>
+        <translation>kein Fix</translation>
+    </message>
+    <message>
         <source>no flight can cover more than {0}, so this is {1} % of what is possible</source>
         <translation>kein Flug kann mehr als {0} abdecken, das sind also {1} % des Möglichen</translation>
     </message>
@@ -11781,6 +11805,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>stated by the pilot</source>
         <translation>Angabe des Piloten</translation>
+    </message>
+    <message>
+        <source>static</source>
+        <translation>statisch</translation>
     </message>
     <message>
         <source>stay open, and the time did not last to find out why; allow it more time</source>

@@ -77,12 +77,12 @@ def meshes() -> Iterator[bytes]:
     yield _ply("float", single, quad + triangle, n_faces=2)
     for faces in (quad[:-1], quad + b"\0", b"", struct.pack("<B2I", 2, 0, 1), struct.pack("<B3I", 3, 0, 1, 4)):
         yield _ply("float", single, faces)
-    yield _ply("float", single[:-4], quad)
-    yield _ply("float", single, quad, n_vertices=5)
+    yield _ply("float", single[:-4], triangle)
+    yield _ply("float", single, triangle, n_vertices=5)
     yield _ply("float", single, b"", n_faces=0)
-    yield _ply("float", struct.pack("<12f", *corners[:-1], 100001.0), quad)
-    yield _ply("float", struct.pack("<12f", *corners[:-1], math.nan), quad)
-    yield _ply("half", single, quad)
+    for z in (1e5, -1e5, 100000.5, -100000.5, 150000.0, math.inf, math.nan):
+        yield _ply("float", struct.pack("<12f", *corners[:-1], z), triangle)
+    yield _ply("half", single, triangle)
     yield b"ply\nend_header\n"
 
 
