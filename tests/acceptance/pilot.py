@@ -8,10 +8,8 @@ from __future__ import annotations
 import os
 import re
 import time
-import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import cache
 from pathlib import Path
 
 from PySide6.QtCore import Qt, QTimer
@@ -25,7 +23,6 @@ from PySide6.QtWidgets import (
     QDialog,
     QLabel,
     QLineEdit,
-    QListView,
     QMenu,
     QPlainTextEdit,
     QTabBar,
@@ -35,55 +32,12 @@ from PySide6.QtWidgets import (
 from groundstation.gui.widgets.hold_button import HoldButton
 from groundstation.services.settings import Language
 from tests.gui.driving import LOOK_MS, click_on, hold_on, scroll_to, turn_until, turn_until_idle, type_into
+from tests.gui.words import german, left_in_english, pattern, plain, text_of
 
 PICTURES = os.environ.get("REFLIGHT_ACCEPTANCE_PICTURES", "")
 """Folder into which the window is photographed at each stage; none unless one is named."""
 
-GERMAN = Path(__file__).resolve().parents[2] / "groundstation/gui/translations/reflight_de.ts"
-
-QT_GERMAN = {"Yes": ("Ja",), "No": ("Nein",), "OK": ("OK",), "Cancel": ("Abbrechen",), "Save": ("Speichern",)}
-"""Words of Qt's own dialogs."""
-
 PATIENCE_S = 240.0
-
-N_ROWS_READ = 100
-"""Of a list or table, when its language is looked at."""
-
-
-@cache
-def german() -> dict[str, tuple[str, ...]]:
-    """What each English text of the window is called in German; one text may have several translations."""
-    found: dict[str, list[str]] = {text: list(texts) for text, texts in QT_GERMAN.items()}
-    for message in ElementTree.parse(GERMAN).iter("message"):
-        source, translation = message.findtext("source", ""), message.findtext("translation", "")
-        found.setdefault(plain(source), []).append(plain(translation))
-    return {source: tuple(texts) for source, texts in found.items()}
-
-
-@cache
-def _english() -> tuple[dict[str, str], re.Pattern[str]]:
-    """English texts of more than one word that German has other words for: without gaps, and a pattern of the others."""
-    texts = [source for source, found in german().items() if " " in source and source not in found]
-    whole = [text for text in texts if not _GAP.search(text)]
-    # A text of little but gaps would be found in anything.
-    with_gaps = [
-        text for text in texts if _GAP.search(text) and len(re.findall("[A-Za-z]{3,}", _GAP.sub("", text))) > 2
-    ]
-    return {text.lower(): text for text in whole}, re.compile("|".join(map(_pattern, with_gaps)), re.IGNORECASE)
-
-
-_GAP = re.compile(r"\{\d[^}]*\}")
-
-
-def is_english(line: str) -> bool:
-    """Whether a line is an English text that German has other words for."""
-    whole, with_gaps = _english()
-    return line.lower() in whole or with_gaps.fullmatch(line) is not None
-
-
-def plain(text: str) -> str:
-    """Text without the marks of its shortcut."""
-    return text.replace("&", "")
 
 
 def stay(_dialog: QDialog) -> None:
@@ -122,12 +76,12 @@ class Pilot:
 
     def says(self) -> str:
         """All that can be read."""
-        return "\n".join(text for text in map(_text_of, self._visible(QWidget)) if text)
+        return "\n".join(text for text in map(text_of, self._visible(QWidget)) if text)
 
     def reads(self, text: str) -> bool:
         """Whether a text stands somewhere; the gaps of a template, as “{0}”, may hold anything."""
         shown = self.says()
-        return any(re.search(_pattern(each), shown) for each in self.words(text))
+        return any(re.search(pattern(each), shown) for each in self.words(text))
 
     def button(self, text: str) -> QAbstractButton:
         """A button by what stands on it, or by its name."""
@@ -296,10 +250,7 @@ class Pilot:
     def see(self, name: str) -> None:
         """Look at the window: all is in its language. Take a picture of the screen, where pictures are wanted."""
         if self.language is Language.GERMAN:
-            texts = {
-                line for each in self._visible(QWidget) for text in _all_texts_of(each) for line in text.splitlines()
-            }
-            left = sorted(filter(is_english, texts))
+            left = left_in_english(self.window)
             assert not left, f"on “{name}” stands in English: {left}"
         if PICTURES:
             self._n_pictures += 1
@@ -313,35 +264,3 @@ class Pilot:
     def _visible(self, kind: type) -> list:
         window = self.window
         return [each for each in window.findChildren(kind) if each.isVisible() and each.window() is window]
-
-
-def _text_of(widget: QWidget) -> str:
-    if isinstance(widget, (QLabel, QAbstractButton, QLineEdit)):
-        return plain(widget.text())
-    if isinstance(widget, QPlainTextEdit):
-        return widget.toPlainText()
-    return ""
-
-
-def _all_texts_of(widget: QWidget) -> Iterator[str]:
-    """What can be read on a widget, also where one points at it, opens it or has not yet filled it in."""
-    yield _text_of(widget)
-    yield plain(widget.toolTip())
-    yield from (plain(action.text()) for action in widget.actions())
-    if isinstance(widget, QLineEdit):
-        yield widget.placeholderText()
-    if isinstance(widget, QTabBar):
-        yield from (plain(widget.tabText(k)) for k in range(widget.count()))
-    if isinstance(widget, QComboBox):
-        yield from (widget.itemText(k) for k in range(widget.count()))
-    if isinstance(widget, QAbstractItemView) and (model := widget.model()) is not None:
-        rows = min(model.rowCount(), N_ROWS_READ)
-        columns = range(1 if isinstance(widget, QListView) else model.columnCount())
-        places = [model.index(row, column) for row in range(rows) for column in columns]
-        for role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
-            yield from (str(place.data(role) or "") for place in places)
-            yield from (str(model.headerData(k, Qt.Orientation.Horizontal, role) or "") for k in columns)
-
-
-def _pattern(template: str) -> str:
-    return re.sub(r"\\\{\d[^}]*\\\}", "(.|\n)*?", re.escape(template))

@@ -1,7 +1,8 @@
 """A user who tries everything: clicks, keys and words at random, on whatever the window shows.
 
-`python -m tests.gui.random_user SEED SECONDS FOLDER [PROJECT]` writes what went wrong to stdout, with what was done
-before it: exceptions, messages of Qt, and layouts whose items PySide holds for gone. A crash ends the process.
+`python -m tests.gui.random_user SEED SECONDS FOLDER LANGUAGE [PROJECT]` writes what went wrong to stdout, with what
+was done before it: exceptions, messages of Qt, English in a German window, and layouts whose items PySide holds for
+gone. A crash ends the process.
 """
 
 from __future__ import annotations
@@ -38,8 +39,12 @@ from groundstation.gui.view3d.canvas import Canvas
 from groundstation.gui.widgets.hold_button import HoldButton
 from groundstation.gui.widgets.scrolling import WrappingRow
 from tests.gui.screen import start_virtual_screen
+from tests.gui.words import left_in_english
 
 PACE_MS, START_MS, HOLD_MS, KEPT = 25, 4000, 1500, 12
+
+ACTS_PER_READING = 5
+"""All that stands in a window is read in a quarter of a second."""
 
 WORDS = ("", "1", "-1", "0", "99999", "abc", "12.5", "47.37, 8.54", "a/b", "1e9", "%n", "{0}", " ", "C:\\x", "nan", "ä")
 
@@ -64,8 +69,9 @@ KINDS = (QAbstractButton, QComboBox, QAbstractSpinBox, QLineEdit, QAbstractSlide
 class RandomUser:
     """Acts until its time is over, and tells what went wrong."""
 
-    def __init__(self, seed: int, seconds: float, folder: Path) -> None:
+    def __init__(self, seed: int, seconds: float, folder: Path, language: str) -> None:
         self.n_faults, self.n_acts = 0, 0
+        self._is_german, self._told = language == "de", set[str]()
         self._rng, self._folder = random.Random(seed), folder
         self._end = time.monotonic() + seconds
         self._done: deque[str] = deque(maxlen=KEPT)
@@ -87,6 +93,7 @@ class RandomUser:
             os._exit(min(1, self.n_faults))
         QTimer.singleShot(PACE_MS, self.act)
         self._look_at_rows()
+        self._read()
         self.n_acts += 1
         try:
             self._act_on(QApplication.activePopupWidget() or QApplication.activeModalWidget() or self._window())
@@ -118,6 +125,14 @@ class RandomUser:
             if lost:
                 self._rows.remove(row)
                 self.tell(f"{lost} of {row.count()} things in a row count as gone")
+
+    def _read(self) -> None:
+        host = QApplication.activeModalWidget() or self._window()
+        if self._is_german and host is not None and self.n_acts % ACTS_PER_READING == 0:
+            new = [line for line in left_in_english(host) if line not in self._told]
+            self._told.update(new)
+            for line in new:
+                self.tell(f"in English: {line}")
 
     def _window(self) -> QWidget | None:
         return next((one for one in QApplication.topLevelWidgets() if isinstance(one, QMainWindow)), None)
@@ -208,7 +223,7 @@ def _name(widget: QWidget) -> str:
     return f"{type(widget).__name__} “{text}”"
 
 
-def main(seed: int, seconds: float, folder: Path, project: Path | None = None) -> None:
+def main(seed: int, seconds: float, folder: Path, language: str = "en", project: Path | None = None) -> None:
     """Begin with the start page, or a project; settings and home are in the folder."""
     faulthandler.enable()
     folder.mkdir(parents=True, exist_ok=True)
@@ -218,9 +233,11 @@ def main(seed: int, seconds: float, folder: Path, project: Path | None = None) -
     application = QApplication(["reflight-tests"])
     application.setQuitOnLastWindowClosed(False)
     from groundstation.gui.window.project_controller import ProjectController
+    from groundstation.services.settings import Language
 
-    user, controller = RandomUser(seed, seconds, folder), ProjectController(application)
+    user, controller = RandomUser(seed, seconds, folder, language), ProjectController(application)
     controller.show()
+    controller.choose(language=Language(language))
     if project is not None:
         QTimer.singleShot(0, lambda: controller.open_path(project))
     QTimer.singleShot(START_MS, user.act)
@@ -228,4 +245,4 @@ def main(seed: int, seconds: float, folder: Path, project: Path | None = None) -
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]), float(sys.argv[2]), Path(sys.argv[3]), Path(sys.argv[4]) if len(sys.argv) > 4 else None)
+    main(int(sys.argv[1]), float(sys.argv[2]), Path(sys.argv[3]), sys.argv[4], *map(Path, sys.argv[5:]))

@@ -13,11 +13,11 @@ SECONDS = 60
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("seed", "has_project"), [(1, False), (2, True)])
-def test_nothing_that_is_tried_ends_the_program_or_is_answered_by_an_exception(tmp_path, seed, has_project):
+@pytest.mark.parametrize(("seed", "language", "has_project"), [(1, "en", False), (2, "en", True), (3, "de", True)])
+def test_nothing_that_is_tried_ends_the_program_or_is_answered_by_an_exception(tmp_path, seed, language, has_project):
     the_application()  # skips where there is no screen
     project = [str(unpack_sample(tmp_path / "home" / "sample"))] if has_project else []
-    arguments = [str(seed), str(SECONDS), str(tmp_path / "home"), *project]
+    arguments = [str(seed), str(SECONDS), str(tmp_path / "home"), language, *project]
     done = subprocess.run(
         [sys.executable, "-m", random_user.__name__, *arguments], capture_output=True, text=True, check=False
     )

@@ -13,6 +13,7 @@ from PySide6.QtCore import QTranslator
 from PySide6.QtWidgets import QMenu, QWidget
 
 from groundstation.gui.application.translate import FOLDER
+from groundstation.gui.map.map_view import MapView
 from groundstation.gui.tabs import TABS
 from groundstation.services.settings import Language
 from tests.gui.driving import close_controller, turn_until
@@ -154,6 +155,29 @@ def controller(application, worker, tmp_path, monkeypatch):
     yield controller
     speak(Language.ENGLISH)
     close_controller(controller)
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(GUI)))
+def test_what_went_wrong_is_passed_on_with_its_parts(path):
+    """A signal of `str` passes on a plain text, which nobody translates."""
+    signals = [node for node in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(node, ast.Assign)]
+    found = {
+        node.targets[0].id: ast.unparse(node.value)
+        for node in signals
+        if isinstance(node.targets[0], ast.Name) and ast.unparse(node.value).startswith("Signal(")
+    }
+    assert {name for name, made in found.items() if re.search("(?i)failed|refused", name) and "str" in made} == set()
+
+
+def test_an_overlay_that_cannot_be_read_is_told_in_german(application, controller, tmp_path):
+    view = MapView()
+    told = []
+    view.refused.connect(told.append)
+    bad = tmp_path / "bad.geojson"
+    bad.write_text("nonsense")
+    view.add_overlay(bad)
+    turn_until(application, lambda: told)
+    assert "bad.geojson: kein gültiges JSON" in told[0]
 
 
 def test_the_window_speaks_german_once_it_is_chosen(controller):

@@ -228,6 +228,15 @@ def take_short_turns() -> None:
     sys.setswitchinterval(SWITCH_S)
 
 
+N_SPARE_TYPES = 1800
+"""Types that make the table of PySide large enough for all others: 681 there are by then, and some 500 are to come.
+
+With these there are some 2500, for which tables of all three C++ libraries have room for 3000 and more. They take 45 ms
+and 4 MB."""
+
+_spare_types: list[type] = []
+
+
 def make_types_of_qt() -> None:
     """Have all types of Qt's modules that are imported by now made on this thread, before there are others.
 
@@ -235,11 +244,17 @@ def make_types_of_qt() -> None:
     types that are to be made damaged, and the process ends with a segmentation fault. While the thread that imports
     asked for all of them, for the 3-D view, the window's thread made those of its events and widgets. There are some
     450 left once the window is made, which take 90 ms here instead of over there.
+
+    With Python before 3.12 PySide keeps what it knows of a type in a hash table, in which Qt looks widgets up without
+    the interpreter's lock. A class that another thread makes may have the table grow meanwhile, from 1109 to 2357
+    places at the last tabs, and the process ends, too: spare types make it grow here.
     """
     for name, module in tuple(sys.modules.items()):
         if name.startswith("PySide6.Qt"):
             for each in dir(module):
                 getattr(module, each)
+    if sys.version_info < (3, 12) and not _spare_types:
+        _spare_types.extend(type("Spare", (QObject,), {}) for _ in range(N_SPARE_TYPES))
 
 
 def leave_modules_alone() -> None:

@@ -71,7 +71,7 @@ class MapLayers(QObject):
         There are other layers.
     overlayAdded(str), overlaysChanged(tuple of Path)
         Key of a new overlay; the files of all of them.
-    refused(str)
+    refused(Message)
         A file could not be read, and why.
     """
 
@@ -80,7 +80,7 @@ class MapLayers(QObject):
     rowsChanged = Signal()  # noqa: N815
     overlayAdded = Signal(str)  # noqa: N815
     overlaysChanged = Signal(object)  # noqa: N815
-    refused = Signal(str)
+    refused = Signal(object)
     _read = Signal(object, object)
 
     def __init__(self, parent: QObject | None = None) -> None:

@@ -232,7 +232,7 @@ class MapView(MapCanvas):
     hovered(Item or None)
     mapChanged(Path)
         Another map file was opened.
-    refused(str)
+    refused(Message)
         A map file or an overlay could not be opened, and why.
     placePicked(float, float), pickEnded()
         Latitude and longitude that the user clicked after `start_pick`; that has ended, picked or not.
@@ -243,7 +243,7 @@ class MapView(MapCanvas):
     picked = Signal(object)
     hovered = Signal(object)
     mapChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
-    refused = Signal(str)
+    refused = Signal(object)
     placePicked = Signal(float, float)  # noqa: N815
     pickEnded = Signal()  # noqa: N815
     onlineChanged = Signal(object)  # noqa: N815

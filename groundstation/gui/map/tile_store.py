@@ -351,12 +351,12 @@ class TileStore(QObject):
     -------
     tilesReady()
         More tiles were decoded: paint again.
-    failed(str)
+    failed(Message)
         The source could not be reached, and why; empty where it is reached again.
     """
 
     tilesReady = Signal()  # noqa: N815  (Qt's own way of naming)
-    failed = Signal(str)
+    failed = Signal(object)
     _decoded = Signal(object, object, object)
 
     def __init__(self, parent: QObject | None = None) -> None:

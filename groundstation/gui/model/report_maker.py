@@ -56,11 +56,11 @@ class ReportMaker(QObject):
 
     Signals
     -------
-    done(Path), failed(str)
+    done(Path), failed(Message)
     """
 
     done = Signal(object)
-    failed = Signal(str)
+    failed = Signal(object)
 
     def __init__(self, controller: ModelController, parent: QObject | None = None) -> None:
         super().__init__(parent)

@@ -106,7 +106,7 @@ class PhotoPane(QWidget):
 
     Signals
     -------
-    refused(str)
+    refused(Message)
         The photo cannot be shown, and why.
     placeChanged()
         Another grid is active, or none.
@@ -114,7 +114,7 @@ class PhotoPane(QWidget):
         The coverage in 3-D came into the place of the photo, or went.
     """
 
-    refused = Signal(str)
+    refused = Signal(object)
     placeChanged = Signal()  # noqa: N815  (Qt's own way of naming)
     coverageShown = Signal(bool)  # noqa: N815
 

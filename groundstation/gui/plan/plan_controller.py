@@ -135,14 +135,14 @@ class PlanController(QObject):
         With the time budget in seconds.
     activePlanChanged(ActivePlan or None)
         The current plan can be looked at and edited; None while it is not active, or there is none.
-    refused(str)
+    refused(Message)
         Why an edit was not carried out.
     """
 
     planningStarted = Signal(object, float)  # noqa: N815  (Qt's own way of naming)
     planningEnded = Signal()  # noqa: N815
     activePlanChanged = Signal(object)  # noqa: N815
-    refused = Signal(str)
+    refused = Signal(object)
 
     def __init__(self, context: ApplicationContext, parent: QObject | None = None) -> None:
         super().__init__(parent)

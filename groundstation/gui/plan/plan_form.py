@@ -31,12 +31,12 @@ class AircraftBox(ChoiceBox):
     Signals
     -------
     valueChanged(str)
-    refused(str)
+    refused(Message)
         Why a file cannot be used; the aircraft before stays.
     """
 
     valueChanged = Signal(str)  # noqa: N815  (Qt's own way of naming)
-    refused = Signal(str)
+    refused = Signal(object)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)

@@ -67,11 +67,11 @@ class ProjectController(QObject):
     -------
     opened()
         Another project, or a new one, is on the controller.
-    autosaveFailed(str)
+    autosaveFailed(Message)
     """
 
     opened = Signal()
-    autosaveFailed = Signal(str)  # noqa: N815  (Qt's own way of naming)
+    autosaveFailed = Signal(object)  # noqa: N815  (Qt's own way of naming)
 
     def __init__(
         self, application: QApplication, questions: Questions | None = None, worker: Worker | None = None

@@ -2,6 +2,7 @@
 
 import contextlib
 import importlib
+import subprocess
 import sys
 import threading
 
@@ -125,3 +126,34 @@ def modules_that_wait(tmp_path, monkeypatch):
 def _import(name):
     with contextlib.suppress(ImportError):
         importlib.import_module(name)
+
+
+ALL_TYPES = """
+import importlib, pkgutil
+from shiboken6 import Shiboken
+import groundstation.gui.window.project_controller
+from groundstation.gui.application.interpreter import make_types_of_qt
+
+def n_types():
+    found, waiting = set(), [Shiboken.Object]
+    while waiting:
+        new = set(type.__subclasses__(waiting.pop())) - found
+        found |= new
+        waiting += new
+    return len(found)
+
+make_types_of_qt()
+at_start = n_types()
+for module in pkgutil.walk_packages(groundstation.gui.__path__, "groundstation.gui."):
+    importlib.import_module(module.name)
+print(at_start, n_types())
+"""
+
+
+@pytest.mark.long
+@pytest.mark.skipif(sys.version_info >= (3, 12), reason="PySide keeps what it knows of types otherwise")
+def test_no_table_of_types_grows_beside_the_window():
+    done = subprocess.run([sys.executable, "-c", ALL_TYPES], capture_output=True, text=True, check=True)
+    at_start, at_end = map(int, done.stdout.split())
+    # Where tables of libstdc++ (2357), libc++ (1543) and Microsoft's library (2048) have grown, and where they do next.
+    assert 2357 < at_start < at_end < min(5087, 3089, 4096)
