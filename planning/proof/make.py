@@ -386,38 +386,32 @@ class _Patches:
 def _shadows(pane: Pane, patches: _Patches | None, most: int) -> Shadows:
     """Shadows of the patches that are seen largest from a panel, `most` of them at most."""
     eye = np.array(pane.target)
-    if patches is None:
+    seen = [] if patches is None else patches.seen_from(pane, most)
+    if patches is None or not seen:
         return no_shadows(eye)
-    found: list[tuple[Array, Array]] = []
-    numbers = []
-    for patch in patches.seen_from(pane, most):
-        silhouette = _silhouette(eye, patch, patches)
-        if silhouette is not None:
-            found.append(silhouette)
-            numbers.append(patches.number(patch))
-    parts = [[each[k] for each in found] for k in range(2)]
-    arrays = [np.concatenate([np.zeros((0, n)), *part]) for part, n in zip(parts, (6, 3), strict=True)]
-    starts = [np.cumsum([0, *map(len, part)]) for part in parts]
-    return Shadows(eye, arrays[0], starts[0], arrays[1], starts[1], np.array(numbers, np.int64))
-
-
-def _silhouette(eye: Array, patch: tuple[int, ...], patches: _Patches) -> tuple[Array, Array] | None:
-    """Faces and planes of the silhouette of a patch, as the verifier finds them; None where it would refuse it."""
-    rays = patches.triangles[list(patch)] - eye
+    first = np.cumsum([0, *map(len, seen)])
+    rays = patches.triangles[[triangle for patch in seen for triangle in patch]] - eye
     sizes = np.sqrt(np.einsum("tck,tck->tc", rays, rays))
     volumes = np.einsum("tk,tk->t", _cross(rays[:, 0], rays[:, 1]), rays[:, 2])
-    if (np.abs(volumes) < 1e-8 * sizes.prod(axis=1)).any():
-        return None
-    border = patches.border(patch, (volumes < 0.0).tobytes())
-    if border is None:
-        return None
-    faces, starts, ends = border
-    if (rays.reshape(-1, 3) @ faces[0, :3] < 2.0 * SLACK_M).any():
-        return None
+    # As the verifier finds them; patches whose silhouette it would refuse are left out.
+    is_plain = np.logical_and.reduceat(np.abs(volumes) >= 1e-8 * sizes.prod(axis=1), first[:-1])
+    borders = [
+        patches.border(patch, (volumes[start:stop] < 0.0).tobytes()) if is_plain[k] else None
+        for k, (patch, start, stop) in enumerate(zip(seen, first[:-1], first[1:], strict=True))
+    ]
+    normals = np.array([np.zeros(3) if border is None else border[0][0, :3] for border in borders])
+    depths = (rays @ np.repeat(normals, np.diff(first), axis=0)[:, :, None]).min(axis=(1, 2))
+    kept = np.flatnonzero(np.minimum.reduceat(depths, first[:-1]) >= 2.0 * SLACK_M)
+    found = [border for k in kept.tolist() if (border := borders[k]) is not None]
+    numbers = [patches.number(seen[k]) for k in kept.tolist()]
+    faces, starts, ends = (
+        np.concatenate([np.zeros((0, n)), *(each[k] for each in found)]) for k, n in enumerate((6, 3, 3))
+    )
     starts, ends = starts - eye, ends - eye
     planes = _cross(starts, ends)
     planes /= np.sqrt(np.einsum("ek,ek->e", starts, starts) * np.einsum("ek,ek->e", ends, ends))[:, None]
-    return faces, planes
+    counts = [np.cumsum([0, *(len(each[k]) for each in found)]) for k in range(2)]
+    return Shadows(eye, faces, counts[0], planes, counts[1], np.array(numbers, np.int64))
 
 
 def _cross(a: Array, b: Array) -> Array:
