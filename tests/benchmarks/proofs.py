@@ -72,7 +72,7 @@ def measure(context: Context) -> Iterator[Row]:
 
 @contextmanager
 def _no_garbage_of_others() -> Iterator[None]:
-    """A pilot's process holds none of what all benchmarks import: searches through it took a third of a proof's time."""
+    """What all benchmarks import, a pilot has not: searches through it took a third of a proof's time."""
     gc.collect()
     gc.freeze()
     try:
