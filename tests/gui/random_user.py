@@ -60,6 +60,9 @@ KEYS = (
     Qt.Key.Key_F8,
 )
 
+NEVER_CHOSEN = ("Quit", "Beenden", "English", "Deutsch")
+"""Entries of menus: the language stays."""
+
 USUAL = ("propagateSizeHints", "QFont", "libEGL", "QStandardPaths", "XDG_RUNTIME", "fontconfig", "GLX")
 """Messages of Qt about the screen and the fonts of a computer without either."""
 
@@ -161,7 +164,7 @@ class RandomUser:
 
     def _choose_in(self, menu: QMenu) -> None:
         actions = [each for each in menu.actions() if each.isEnabled() and each.isVisible() and each.text()]
-        actions = [each for each in actions if "Quit" not in each.text()]
+        actions = [each for each in actions if each.text().replace("&", "") not in NEVER_CHOSEN]
         if not actions or self._rng.random() < 0.2:
             QTest.keyClick(menu, Qt.Key.Key_Escape)
             return
