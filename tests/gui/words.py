@@ -43,7 +43,7 @@ def german() -> dict[str, tuple[str, ...]]:
 
 
 @cache
-def _english() -> tuple[dict[str, str], re.Pattern[str]]:
+def _english() -> tuple[frozenset[str], re.Pattern[str]]:
     """English texts of some words that German has others for: those without gaps, and a pattern of the rest."""
     texts = [
         source for source, found in german().items() if " " in source and source.lower() not in map(str.lower, found)
@@ -53,7 +53,7 @@ def _english() -> tuple[dict[str, str], re.Pattern[str]]:
     with_gaps = [
         text for text in texts if _GAP.search(text) and len(re.findall("[A-Za-z]{3,}", _GAP.sub("", text))) > 2
     ]
-    return {text.lower(): text for text in whole}, re.compile("|".join(map(pattern, with_gaps)), re.IGNORECASE)
+    return frozenset(map(str.lower, whole)), re.compile("|".join(map(pattern, with_gaps)), re.IGNORECASE)
 
 
 def is_english(line: str) -> bool:

@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtCore import QElapsedTimer, QObject, QTimer, Signal
 
 # Python's search for cyclic garbage, done in the window's thread only and when there is time.
 #
@@ -254,7 +254,7 @@ def make_types_of_qt() -> None:
             for each in dir(module):
                 getattr(module, each)
     if sys.version_info < (3, 12) and not _spare_types:
-        _spare_types.extend(type("Spare", (QObject,), {}) for _ in range(N_SPARE_TYPES))
+        _spare_types.extend(type("Spare", (QElapsedTimer,), {}) for _ in range(N_SPARE_TYPES))
 
 
 def leave_modules_alone() -> None:
