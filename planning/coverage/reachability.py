@@ -29,7 +29,7 @@ from planning.coverage.reach_kernel import (
     Limits,
     decide_sections,
 )
-from planning.geo.mesh import closed_parts
+from planning.geo.mesh import closed_parts, row_numbers
 from planning.geo.solids import INSIDE_RAYS, Solids
 from planning.plan import Camera
 from planning.site.free_space import SAFETY_MARGIN_M, FreeSpace
@@ -90,13 +90,12 @@ def _flat_patches(corners: Array) -> list[NDArray[np.int64]]:
     n = len(corners)
     if n == 0:
         return []
-    _, vertex = np.unique(corners.reshape(-1, 3).round(6), axis=0, return_inverse=True)
-    triangles = vertex.reshape(n, 3)
+    triangles = row_numbers(corners.reshape(-1, 3).round(6)).reshape(n, 3)
     edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     owner = np.repeat(np.arange(n), 3)
-    _, edge = np.unique(edges, axis=0, return_inverse=True)
-    order = np.argsort(edge.ravel(), kind="stable")
-    same = np.flatnonzero(np.diff(edge.ravel()[order]) == 0)
+    edge = row_numbers(edges)
+    order = np.argsort(edge, kind="stable")
+    same = np.flatnonzero(np.diff(edge[order]) == 0)
     a, b = owner[order[same]], owner[order[same + 1]]
     normals, offsets = _plane(corners)
     extent = float(np.ptp(corners.reshape(-1, 3), axis=0).max())

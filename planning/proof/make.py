@@ -25,6 +25,7 @@ from planning.base.progress import QUIET, Monitor
 from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
 from planning.coverage.reachability import Reachability, convex_groups
 from planning.geo.bvh import Bvh, build_bvh
+from planning.geo.mesh import row_numbers
 from planning.proof.boxes import CONE, CUT_X, LOW, PLANE, Panel, Shadows, Terrain, exclude, no_shadows
 from planning.proof.reflight_verify import Case, Pane, Refused
 from planning.proof.separation import DirectionTable, Separator
@@ -325,8 +326,7 @@ class _Patches:
 
     def __init__(self, triangles: Array) -> None:
         self.triangles = triangles
-        _, vertices = np.unique(triangles.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
-        self.vertices = vertices.reshape(-1, 3).astype(np.int64)
+        self.vertices = row_numbers(triangles.reshape(-1, 3)).reshape(-1, 3)
         _, group, sizes = np.unique(convex_groups(triangles), return_inverse=True, return_counts=True)
         self.order = np.argsort(group, kind="stable")
         self.starts = np.cumsum([0, *sizes])

@@ -118,10 +118,6 @@ class RandomUser:
 
         WrappingRow.__init__ = noted
 
-    def _hear(self, text: str) -> None:
-        if not any(each in text for each in USUAL):
-            self.tell(text)
-
     def _look_at_rows(self) -> None:
         for row in [row for row in self._rows if isValid(row)]:
             lost = sum(not isValid(row.itemAt(number)) for number in range(row.count()))
@@ -226,7 +222,7 @@ def _name(widget: QWidget) -> str:
     return f"{type(widget).__name__} “{text}”"
 
 
-def main(seed: int, seconds: float, folder: Path, language: str = "en", project: Path | None = None) -> None:
+def main(seed: int, seconds: float, folder: Path, language: str, project: Path | None = None) -> None:
     """Begin with the start page, or a project; settings and home are in the folder."""
     faulthandler.enable()
     folder.mkdir(parents=True, exist_ok=True)

@@ -232,8 +232,8 @@ class MapView(MapCanvas):
     hovered(Item or None)
     mapChanged(Path)
         Another map file was opened.
-    refused(Message)
-        A map file or an overlay could not be opened, and why.
+    refused(str)
+        A map file or an overlay could not be opened, and why, in the window's language.
     placePicked(float, float), pickEnded()
         Latitude and longitude that the user clicked after `start_pick`; that has ended, picked or not.
     onlineChanged(OnlineMap), overlaysChanged(tuple of Path)

@@ -342,7 +342,7 @@ class ExportDialog(AnsweringDialog):
         self._is_writing = False
         self._context.say(Severity.OK, self.tr("Written: {0}").format(", ".join(str(path) for path in paths)))
         if proof is not None:
-            self._context.say(proof.severity, self._context.localized(proof.message))
+            self._context.say(proof.severity, proof.message)
         self.written.emit(paths)
         self.accept()
 

@@ -135,8 +135,8 @@ class PlanController(QObject):
         With the time budget in seconds.
     activePlanChanged(ActivePlan or None)
         The current plan can be looked at and edited; None while it is not active, or there is none.
-    refused(Message)
-        Why an edit was not carried out.
+    refused(str)
+        Why an edit was not carried out, in the window's language.
     """
 
     planningStarted = Signal(object, float)  # noqa: N815  (Qt's own way of naming)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from planning.base.errors import InputError
 from planning.base.messages import say
 from planning.base.step_physical_file import real_name, repaired_file
+from planning.geo.mesh import row_numbers
 from planning.site.importing.polygons import area_vector
 from planning.site.importing.source import left_out_notes
 from planning.site.importing.window_faces import MIN_GLASS_SHARE, Pane, covered_area, facing_axis, pane_of
@@ -294,8 +295,7 @@ def skin_panes(shape: Shape) -> list[Pane]:
     from scipy.sparse.csgraph import connected_components
 
     glass = shape.glass
-    _, vertex = np.unique(glass.reshape(-1, 3).round(4), axis=0, return_inverse=True)
-    vertex = vertex.ravel()
+    vertex = row_numbers(glass.reshape(-1, 3).round(4))
     triangle = np.repeat(np.arange(len(glass)), 3)
     n = len(glass) + int(vertex.max()) + 1
     graph = coo_array((np.ones(len(vertex)), (triangle, len(glass) + vertex)), shape=(n, n))

@@ -155,5 +155,5 @@ print(at_start, n_types())
 def test_no_table_of_types_grows_beside_the_window():
     done = subprocess.run([sys.executable, "-c", ALL_TYPES], capture_output=True, text=True, check=True)
     at_start, at_end = map(int, done.stdout.split())
-    # Where tables of libstdc++ (2357), libc++ (1543) and Microsoft's library (2048) have grown, and where they do next.
-    assert 2357 < at_start < at_end < min(5087, 3089, 4096)
+    # Where tables of libstdc++, libc++ and Microsoft's library have grown before, and where they do next.
+    assert max(2357, 1597, 2048) < at_start < at_end < min(5087, 3203, 4096)
