@@ -9,7 +9,8 @@ import numpy as np
 
 from planning.base.progress import QUIET
 from planning.tradeoff.runner import draw
-from reconstruction.metrics.metrics import SetScores, summarise
+from reconstruction.metrics.metrics import FOUND_IOU, SetScores, summarise
+from reconstruction.metrics.overlaps import pixel_overlaps
 from reconstruction.metrics.run import own_method, score_answer
 from reconstruction.metrics.sets import ScoredPhoto, annotated_set, folder_set
 from reconstruction.panels.network.calibration import are_there
@@ -26,6 +27,9 @@ REPORTED = (0.15, 0.3, LEAST_BELIEVED, 0.75, 0.9, 1.0)
 
 WANTED = {"glass": 0.6, "offices": 0.3, "cmp": 0.45}
 FALSE_SHARE = 0.25
+
+WINDOW_IOU, WINDOW_HELD = 0.25, 0.8
+"""A false panel that overlaps a window by so much, or holds so much of one, is that window."""
 
 
 def measure(context: Context) -> Iterator[Row]:
@@ -49,6 +53,7 @@ def measure(context: Context) -> Iterator[Row]:
         scores = _scores(photos, SegmentationParameters())
         yield from _rows(scene, "--network auto", scores)
         yield _false_share(scene, scores, FALSE_SHARE if name in WANTED else None)
+        yield on_windows(scene, photos)
         yield from _reliability(scene, photos)
     draw("Network for panes: accuracy against time for one photo", panels, MIOU_AXIS, context.folder / "network.png")
 
@@ -98,6 +103,21 @@ def _false_share(scene: str, scores: SetScores, limit: float | None) -> Row:
     what = "false panels of those found, --network auto"
     target = ("", None) if limit is None else (f"under {limit}", share < limit)
     return Row(scene, what, round(share, 3), "", None, "", *target)
+
+
+def on_windows(scene: str, photos: list[ScoredPhoto]) -> Row:
+    """Of false panels, those that are windows all the same: of another size, or with something before them."""
+    method, n_false, n_windows = own_method(SegmentationParameters()), 0, 0
+    for photo in photos:
+        areas = pixel_overlaps(photo.index, method(photo, QUIET).index)
+        union = areas.true_areas[:, None] + areas.found_areas - areas.joint
+        overlap = (areas.joint / union).max(axis=0, initial=0.0)
+        held = (areas.joint / areas.true_areas[:, None]).max(axis=0, initial=0.0)
+        is_false = overlap <= FOUND_IOU
+        n_false += int(is_false.sum())
+        n_windows += int((is_false & ((overlap > WINDOW_IOU) | (held > WINDOW_HELD))).sum())
+    what = "of false panels, windows of another size or outline"
+    return Row(scene, what, round(n_windows / max(n_false, 1), 3), "", None, f"{n_windows} of {n_false}")
 
 
 def _reliability(scene: str, photos: list[ScoredPhoto]) -> Iterator[Row]:
