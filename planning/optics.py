@@ -12,10 +12,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal, overload
+
+import numpy as np
+from numpy.typing import NDArray
 
 from planning.base.messages import say
 from planning.parameters import FocusMode, ShutterKind, WhiteBalance
+
+Array = NDArray[np.float64]
 
 MM_PER_M = 1000.0
 
@@ -164,21 +169,30 @@ class Lens:
         farthest = at - half
         return 1.0 / (at + half), math.inf if farthest <= 0.0 else 1.0 / farthest
 
-    def defocus_px(self, focus_m: float, distance_m: float) -> float:
-        """Diameter of the circle that a point becomes, in pixels: f^2 / (N c) |1/s - 1/d| / (1 - f/s), c a pixel."""
+    @overload
+    def defocus_px(self, focus_m: float, distance_m: float) -> float: ...
+    @overload
+    def defocus_px(self, focus_m: Array, distance_m: Array) -> Array: ...
+    def defocus_px(self, focus_m: float | Array, distance_m: float | Array) -> float | Array:
+        """Diameter of the circle that a point becomes, in pixels: f^2 / (N c) |1/s - 1/d| / (1 - f/s), c a pixel.
+
+        Arrays have shapes that fit each other.
+        """
         at, where = self._reciprocal(focus_m, "focus_m"), self._reciprocal(distance_m, "distance_m")
         share = 1.0 - self.focal_length_mm / MM_PER_M * at
-        return self._depth_mm / MM_PER_M * abs(at - where) / share
+        circle: float | Array = self._depth_mm / MM_PER_M * abs(at - where) / share
+        return circle
 
-    def _reciprocal(self, distance_m: float, name: str) -> float:
+    def _reciprocal(self, distance_m: float | Array, name: str) -> Any:
         """One over a distance, 0 for infinity; nothing nearer than the focal length has an image."""
-        _positive(distance_m, name, infinite=True)
-        if distance_m * MM_PER_M <= self.focal_length_mm:
+        nearest_m = float(np.min(distance_m))  # NaN where there is one
+        _positive(nearest_m, name, infinite=True)
+        if nearest_m * MM_PER_M <= self.focal_length_mm:
             raise ValueError(
                 say(
                     "expected more than the focal length of {:g} mm, got {:g} m",
                     self.focal_length_mm,
-                    distance_m,
+                    nearest_m,
                     place=name,
                 )
             )

@@ -7,27 +7,27 @@ What is mirrored lies behind the pane, up to infinity (sky), so a photo needs de
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from planning.aircraft.camera_use import SHARP_PX, CameraUse, camera_use_of, focus_text
 from planning.base.effects import Assessment, Decision, decide
 from planning.base.errors import InfeasibleError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import joined, say
-from planning.checks.case import Case, Rule, judge, pose_of
-from planning.geo.frames import camera_axes, heading_difference_rad
+from planning.checks.case import NEAREST_GLASS_M, Case, Rule, judge, pose_of
+from planning.geo.frames import heading_difference_rad
 from planning.motion.timing import MotionLimits, motion_limits, sortie_flight_path, speed_limits_m_s
 from planning.optics import STOPS, sharpest_f_number, shutter_text, shutter_within, smear_px
 from planning.plan import Plan, Sortie, Viewpoint, viewpoint_arrays
 
+Array = NDArray[np.float64]
+
 BLURRED_PX = 2.0
 """Circle of confusion from which on a photo shows less than its pixels hold: two are the finest that they resolve."""
-
-NEAREST_M = 0.1
-"""Glass counts as no nearer: a photo of it would be an accident."""
 
 USUAL_READOUT_S = 0.03
 """Of an electronic shutter whose readout nobody has published: OpenDroneMap's default, the middle of its table."""
@@ -114,7 +114,7 @@ def _sortie_motions(
         speed_m_s = min(float(fastest_m_s[vertex]), math.sqrt(2.0 * limits.acceleration_m_s2 * to_stop_m))
         turn_rad_s = min(float(per_metre[number]) * speed_m_s, limits.yaw_rate_rad_s) if speed_m_s > 0.0 else 0.0
         nearest_m = case.measures.nearest_m[pose_of(by_id[name])]
-        yield PhotoMotion(name, speed_m_s, turn_rad_s, plan.camera.gsd_m(max(nearest_m, NEAREST_M)))
+        yield PhotoMotion(name, speed_m_s, turn_rad_s, plan.camera.gsd_m(max(nearest_m, NEAREST_GLASS_M)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,28 +244,9 @@ def rolling_shutter(case: Case) -> Iterator[Finding]:
 
 
 def glass_depths_m(case: Case) -> dict[str, tuple[float, float]]:
-    """Nearest and farthest glass in each photo along its axis, by viewpoint; photos that cover no panel are left out.
-
-    Of the panels that a photo covers: their middles, and those of their corners that it shows.
-    """
-    plan, frames, n_sections = case.plan, case.model.frames, case.model.grid.n_sections
-    views = viewpoint_arrays(plan.viewpoints)
-    forward, right, up = camera_axes(views.heading_rad, views.pitch_rad)
-    points = np.concatenate([frames.centroids[:, None], frames.corners], axis=1)
-    found: dict[str, tuple[float, float]] = {}
-    for number, viewpoint in enumerate(plan.viewpoints):
-        panels = case.measures.seen[pose_of(viewpoint)].elements // n_sections
-        if not len(panels):
-            continue
-        rays = points[panels] - views.positions_enu_m[number]
-        depths = rays @ forward[number]
-        shown = (np.abs(rays @ right[number]) <= plan.camera.half_width * depths) & (
-            np.abs(rays @ up[number]) <= plan.camera.half_height * depths
-        )
-        shown[:, 0] = True
-        inside = np.maximum(depths[shown], NEAREST_M)
-        found[viewpoint.id] = float(inside.min()), float(inside.max())
-    return found
+    """Nearest and farthest glass in each photo along its axis, by viewpoint; without photos that cover no panel."""
+    measured = ((each.id, case.measures.glass_m[pose_of(each)]) for each in case.plan.viewpoints)
+    return {name: (nearest_m, farthest_m) for name, (nearest_m, farthest_m) in measured if nearest_m <= farthest_m}
 
 
 @dataclass(frozen=True, slots=True)
@@ -288,23 +269,26 @@ def worst_defocus(case: Case, use: CameraUse, f_number: float) -> Defocus | None
     depths, lens, settings = glass_depths_m(case), case.plan.camera.lens(f_number), use.settings
     if not depths:
         return None
-    first = {
-        name: next((each for each in sortie.viewpoint_ids if each in depths), name)
-        for sortie in case.plan.sorties
-        for name in sortie.viewpoint_ids
-    }
-    pane, mirror = (0.0, ""), (0.0, "")
-    for name, (near_m, far_m) in depths.items():
-        focused_on = depths[first.get(name, name) if settings.focus == "lock" else name]
-        focuses_m: tuple[float, ...] = (*focused_on, math.inf)
-        if settings.focus == "infinity":
-            focuses_m = (math.inf,)
-        elif settings.focus_distance_m is not None:
-            focuses_m = (settings.focus_distance_m,)
-        pane = max(pane, (max(lens.defocus_px(at, d) for at in focuses_m for d in (near_m, far_m)), name))
-        mirror = max(mirror, (max(lens.defocus_px(at, math.inf) for at in focuses_m), name))
-    nearest_m = min(near_m for near_m, _ in depths.values())
-    return Defocus(*pane, *mirror, nearest_m)
+    names, ends_m = list(depths), np.array(list(depths.values()))
+    if settings.focus in ("auto", "lock"):
+        focuses_m = np.full((len(names), 3), math.inf)
+        focuses_m[:, :2] = _focused_on_m(case, depths, settings.focus == "lock")
+    else:
+        focuses_m = np.full((len(names), 1), settings.focus_distance_m or math.inf)
+    pane_px = lens.defocus_px(focuses_m[:, :, None], ends_m[:, None, :]).max(axis=(1, 2))
+    mirror_px = lens.defocus_px(focuses_m, np.full_like(focuses_m, math.inf)).max(axis=1)
+    worst = (float(pane_px.max()), names[int(pane_px.argmax())], float(mirror_px.max()), names[int(mirror_px.argmax())])
+    return Defocus(*worst, float(ends_m[:, 0].min()))
+
+
+def _focused_on_m(case: Case, depths: Mapping[str, tuple[float, float]], is_locked: bool) -> Array:
+    """Nearest and farthest glass that an automatic focus may settle on, of each photo, shape (n, 2)."""
+    first = {name: name for name in depths}
+    if is_locked:
+        for sortie in case.plan.sorties:
+            showing = [name for name in sortie.viewpoint_ids if name in depths]
+            first |= dict.fromkeys(showing, showing[0]) if showing else {}
+    return np.array([depths[first[name]] for name in depths])
 
 
 class DepthOfField:

@@ -15,7 +15,7 @@ from planning.base.findings import Finding, Severity
 from planning.base.messages import glue, say
 from planning.coverage.evaluate import Sight, section_counts, sights
 from planning.coverage.model import CoverageModel
-from planning.geo.frames import Vec3
+from planning.geo.frames import Vec3, camera_axes
 from planning.geo.solids import Solids
 from planning.motion.speed_profile import corner_saving_s
 from planning.motion.timing import (
@@ -26,7 +26,7 @@ from planning.motion.timing import (
     stopping_duration_s,
     stopping_times_s,
 )
-from planning.plan import Plan, Sortie, Viewpoint
+from planning.plan import Plan, Sortie, Viewpoint, viewpoint_arrays
 from planning.routing.rally import ReturnRoute, return_routes
 from planning.site.free_space import FreeSpace, unchecked_space
 from planning.site.records import SiteModel
@@ -94,6 +94,8 @@ class Measures:
         What each viewpoint covers.
     nearest_m
         Distance of each viewpoint to the nearest panel in its picture, also where that is too far away to count.
+    glass_m
+        Nearest and farthest glass in each photo, see `_glass_m`.
     counts
         Views of each section, shape (m, n_sections).
     solid_gaps, no_fly_gaps
@@ -106,6 +108,7 @@ class Measures:
 
     seen: Mapping[Pose, Sight]
     nearest_m: Mapping[Pose, float]
+    glass_m: Mapping[Pose, tuple[float, float]]
     counts: NDArray[np.int64]
     solid_gaps: Gaps
     no_fly_gaps: Gaps
@@ -113,9 +116,12 @@ class Measures:
     flights: Mapping[FlightKey, TimedFlight | None]
 
 
+NEAREST_GLASS_M = 0.1
+"""Glass counts as no nearer: a photo of it would be an accident."""
+
 _NOT_KNOWN = object()
 _NO_GAPS = Gaps({}, {})
-NOTHING_KNOWN = Measures({}, {}, np.zeros((0, 0), np.int64), _NO_GAPS, _NO_GAPS, {}, {})
+NOTHING_KNOWN = Measures({}, {}, {}, np.zeros((0, 0), np.int64), _NO_GAPS, _NO_GAPS, {}, {})
 
 
 def pose_of(viewpoint: Viewpoint) -> Pose:
@@ -149,6 +155,7 @@ def measure(plan: Plan, space: FreeSpace, model: CoverageModel, known: Measures 
     return Measures(
         seen=seen,
         nearest_m=nearest_m,
+        glass_m=_completed(by_pose, known.glass_m, lambda poses: _glass_m(model, by_pose, seen, poses)),
         counts=section_counts(model, [seen[pose_of(viewpoint)] for viewpoint in plan.viewpoints]),
         solid_gaps=_gaps(space.solids, plan, known.solid_gaps),
         no_fly_gaps=_gaps(space.no_fly, plan, known.no_fly_gaps) if len(space.no_fly.part) else _NO_GAPS,
@@ -175,6 +182,31 @@ def _completed(
 
 def _nearest_m(model: CoverageModel, by_pose: Mapping[Pose, Viewpoint], poses: list[Pose]) -> list[float]:
     return [sight.nearest_m for sight in sights(model, [by_pose[pose] for pose in poses])]
+
+
+def _glass_m(
+    model: CoverageModel, by_pose: Mapping[Pose, Viewpoint], seen: Mapping[Pose, Sight], poses: list[Pose]
+) -> list[tuple[float, float]]:
+    """Nearest and farthest glass in photos along their axes; inf and -inf where a photo covers no panel.
+
+    Of the panels that a photo covers: their middles, and those of their corners that it shows.
+    """
+    covered = [seen[pose].elements // model.grid.n_sections for pose in poses]
+    panels, photos = np.concatenate(covered), np.repeat(np.arange(len(poses)), [len(each) for each in covered])
+    views = viewpoint_arrays(tuple(by_pose[pose] for pose in poses))
+    axes = [axis[photos] for axis in camera_axes(views.heading_rad, views.pitch_rad)]
+    nearest, farthest = np.full(len(poses), np.inf), np.full(len(poses), -np.inf)
+    for number, places in enumerate((model.frames.centroids, *model.frames.corners.transpose(1, 0, 2))):
+        rays = places[panels] - views.positions_enu_m[photos]
+        depths, aside, above = (np.einsum("ij,ij->i", rays, axis) for axis in axes)
+        shown = (np.abs(aside) <= model.camera.half_width * depths) & (
+            np.abs(above) <= model.camera.half_height * depths
+        )
+        chosen = slice(None) if number == 0 else shown
+        inside = np.maximum(depths[chosen], NEAREST_GLASS_M)
+        np.minimum.at(nearest, photos[chosen], inside)
+        np.maximum.at(farthest, photos[chosen], inside)
+    return list(zip(nearest.tolist(), farthest.tolist(), strict=True))
 
 
 def _gaps(solids: Solids, plan: Plan, known: Gaps) -> Gaps:

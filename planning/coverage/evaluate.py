@@ -73,9 +73,12 @@ def section_counts(model: CoverageModel, seen: Sequence[Sight]) -> NDArray[np.in
 
 def nearest_views_m(model: CoverageModel, seen: Iterable[Sight]) -> NDArray[np.float64]:
     """Distance of the nearest view of each section, shape (n_elements,), inf where there is none."""
-    nearest_m = np.full(model.n_elements, np.inf)
-    for sight in seen:
-        nearest_m[sight.elements] = np.minimum(nearest_m[sight.elements], sight.distances_m)
+    nearest_m, chosen = np.full(model.n_elements, np.inf), tuple(seen)
+    if chosen:
+        elements, distances_m = (
+            np.concatenate(parts) for parts in zip(*((s.elements, s.distances_m) for s in chosen), strict=True)
+        )
+        np.minimum.at(nearest_m, elements, distances_m)
     return nearest_m
 
 

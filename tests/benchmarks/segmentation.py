@@ -225,9 +225,8 @@ BENCHMARK = Benchmark(
     "Scores as in the paper's Table 1, on synthetic facades of 1600 x 1200 pixels whose every panel is known: strong "
     "mirror images that differ from pane to pane, blinds, glare, shadows, clutter, missing profiles and panels; the "
     "camera's pose and the wall's surface are given, and the wall's extent with its masonry to 2 m, but not where in "
-    "it the glass begins. Then real facades with annotated "
-    "windows, as they are: there a panel is a window, and between windows is wall, which a search for curtain walls "
-    "does not expect. Pictures: truth blue, found orange, missed red; real photos are not shown. "
+    "it the glass begins. Then real facades with annotated windows, as they are, where a panel is a window that the "
+    "network finds. Pictures: truth blue, found orange, missed red; real photos are not shown. "
     "Other methods' numbers stand here once somebody runs their weights: `score segmentation --masks` takes their "
     "masks.",
     measure,
