@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 from planning.aircraft.catalogue import profiles
 from planning.base.messages import joined, say
@@ -138,6 +139,7 @@ def focus_text(settings: CameraSettings) -> str:
     return FOCUSES[settings.focus]
 
 
+@lru_cache(maxsize=64)
 def camera_use(
     camera: Camera, controls: CameraControls | None, settings: CameraSettings, min_distance_m: float
 ) -> CameraUse:
