@@ -170,6 +170,17 @@ def test_depths_are_those_along_the_axis_and_only_of_what_is_in_the_picture() ->
     assert far_m == pytest.approx(12.0), "panes of the east side are not seen from there"
 
 
+def test_depths_of_each_photo_do_not_depend_on_the_others() -> None:
+    plan = row()
+    turned = replace(plan.viewpoints[0], id="away", heading_deg=plan.viewpoints[0].heading_deg + 180.0)
+    together = glass_depths_m(Case.of(replace(plan, viewpoints=(*plan.viewpoints, turned)), kiosk()))
+    alone = {}
+    for viewpoint in plan.viewpoints:
+        alone |= glass_depths_m(Case.of(replace(plan, viewpoints=(viewpoint,), sorties=()), kiosk()))
+    assert together.keys() == alone.keys(), "and a photo that covers nothing has none"
+    np.testing.assert_allclose(list(together.values()), list(alone.values()), rtol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("settings", "text"),
     [

@@ -192,3 +192,15 @@ def test_shutter_times_are_named_as_cameras_name_them_and_never_rounded_to_longe
 def test_what_is_no_lens_and_no_exposure_is_refused_in_words(call: Callable[[], object], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         call()
+
+
+def test_circles_of_many_points_are_those_of_each_and_the_nearest_that_has_no_image_is_named() -> None:
+    lens = Lens(35.0, 8.0, 0.004)
+    focuses_m, distances_m = np.array([[5.0], [math.inf]]), np.array([2.0, 7.0, math.inf])
+    together = lens.defocus_px(focuses_m, distances_m)
+    alone = [[lens.defocus_px(at, to) for to in distances_m.tolist()] for at in focuses_m[:, 0].tolist()]
+    np.testing.assert_array_equal(together, alone)
+    with pytest.raises(ValueError, match="distance_m: expected more than the focal length of 35 mm, got 0.03 m"):
+        lens.defocus_px(focuses_m, np.array([2.0, 0.03]))
+    with pytest.raises(ValueError, match="distance_m: expected a number above 0, got nan"):
+        lens.defocus_px(focuses_m, np.array([2.0, math.nan]))

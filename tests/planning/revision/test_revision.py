@@ -83,11 +83,17 @@ def test_a_turn_by_one_angle_alone_is_seen(turn: dict[str, float]) -> None:
 
 def test_only_what_changed_is_measured_again(monkeypatch: pytest.MonkeyPatch) -> None:
     start = planned("kiosk")
-    asked: dict[str, int] = {"views": 0, "legs": 0, "ways home": 0}
+    asked: dict[str, int] = {"views": 0, "glass": 0, "legs": 0, "ways home": 0}
 
     def counting(model, viewpoints):  # type: ignore[no-untyped-def]
         asked["views"] += len(viewpoints)
         return sights(model, viewpoints)
+
+    glass_m = measures._glass_m
+
+    def counting_glass(model, by_pose, seen, poses):  # type: ignore[no-untyped-def]
+        asked["glass"] += len(poses)
+        return glass_m(model, by_pose, seen, poses)
 
     segments = type(start.case.space.solids).segment_distances_m
 
@@ -97,11 +103,12 @@ def test_only_what_changed_is_measured_again(monkeypatch: pytest.MonkeyPatch) ->
         return segments(solids, a, b, *upper)
 
     monkeypatch.setattr(measures, "sights", counting)
+    monkeypatch.setattr(measures, "_glass_m", counting_glass)
     monkeypatch.setattr(type(start.case.space.solids), "segment_distances_m", counting_legs)
     chosen = max(start.plan.viewpoints, key=lambda viewpoint: viewpoint.position_enu_m[2])  # seen from all others
     x, y, z = chosen.position_enu_m
     moved = move(start, chosen.id, (x, y, z - 0.5))
-    assert asked["views"] == 1
+    assert asked["views"] == asked["glass"] == 1
     assert 2 <= asked["legs"] <= 8
     legs = {leg for sortie in moved.plan.sorties for leg in legs_of(sortie)} - set(start.case.measures.return_routes)
     n_places = sum(1 + max(1, math.ceil(math.dist(*leg) / SAMPLE_M)) for leg in legs)
