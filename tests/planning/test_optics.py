@@ -200,7 +200,7 @@ def test_circles_of_many_points_are_those_of_each_and_the_nearest_that_has_no_im
     together = lens.defocus_px(focuses_m, distances_m)
     alone = [[lens.defocus_px(at, to) for to in distances_m.tolist()] for at in focuses_m[:, 0].tolist()]
     np.testing.assert_array_equal(together, alone)
-    with pytest.raises(ValueError, match="distance_m: expected more than the focal length of 35 mm, got 0.03 m"):
+    with pytest.raises(ValueError, match=r"distance_m: .* more than the focal length of 35 mm, got 0\.03 m"):
         lens.defocus_px(focuses_m, np.array([2.0, 0.03]))
     with pytest.raises(ValueError, match="distance_m: expected a number above 0, got nan"):
         lens.defocus_px(focuses_m, np.array([2.0, math.nan]))
