@@ -46,6 +46,9 @@ KEPT_EVERY = 100
 MOST_LOOKED_AT, LOOKED_AT = 1 << 18, 1 << 14
 """Rays that transients are looked for by, and those of them that are shaded at once."""
 
+LOOK_EVERY_S, LOOK_SHARE = 10.0, 0.05
+"""Seconds from one look at what is learned so far to the next, at least, and the largest share of time for it."""
+
 LEAST_BATCH = 32
 """Rays; where there is no memory for so few, there is none for the model."""
 
@@ -133,13 +136,21 @@ class LightTraining:
         by_time = 0.0 if self.config.time_limit_s is None else self.at.spent_s / self.config.time_limit_s
         return min(1.0, max(self.at.step / self.n_steps, by_time))
 
-    def run(self, quality: Callable[[ReflectivePanels], float] | None, every: int, monitor: Monitor = QUIET) -> None:
+    def run(
+        self,
+        quality: Callable[[ReflectivePanels], float] | None,
+        every: int,
+        monitor: Monitor = QUIET,
+        look: Callable[[ReflectivePanels], object] | None = None,
+    ) -> None:
         """Train to the end, or until time is up.
 
         Parameters
         ----------
         quality
             For the history, asked after every so many steps, which takes no time of the training's.
+        look
+            Called with a finished copy now and then, `LOOK_SHARE` of the time at most.
 
         Raises
         ------
@@ -149,6 +160,7 @@ class LightTraining:
             From `monitor`; the state is kept then.
         """
         at = self.at
+        look_at_s = at.spent_s + LOOK_EVERY_S
         while self.progress < 1.0:
             try:
                 monitor.report(say("learning reflections"), at.step, self.n_steps)
@@ -164,11 +176,18 @@ class LightTraining:
                 self.panels.eval()
                 at.history.append((at.spent_s, quality(self.panels)))
                 self.panels.train()
+            if look is not None and at.spent_s >= look_at_s:
+                begun_s = self._clock()
+                look(self._finished(copy.deepcopy(self.panels)))
+                look_at_s = at.spent_s + max(LOOK_EVERY_S, (self._clock() - begun_s) / LOOK_SHARE)
         begun_s = self._clock()
-        if self.panels.light is not None:
-            self.panels.light.finish(self.config)
-        self.panels.cpu().eval()
+        self._finished(self.panels)
         at.spent_s += self._clock() - begun_s
+
+    def _finished(self, panels: ReflectivePanels) -> ReflectivePanels:
+        if panels.light is not None:
+            panels.light.finish(self.config)
+        return panels.cpu().eval()
 
     def step(self) -> None:
         """One step.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import statistics
 import time
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache, partial
@@ -106,6 +106,7 @@ def train_reflections(
     clock: Clock = time.perf_counter,
     keeping: CheckpointSettings | None = None,
     device: str = "cpu",
+    look: Callable[[TrainedReflections], object] | None = None,
 ) -> TrainedReflections:
     """Train a model on rays.
 
@@ -117,6 +118,8 @@ def train_reflections(
         How its state is kept, and which one it goes on from: one of the same rays, model and settings.
     device
         Of torch, where it learns; the panels come back on the processor.
+    look
+        Called now and then with a copy of what is learned so far.
 
     Raises
     ------
@@ -139,29 +142,33 @@ def train_reflections(
         initial = new_panels(rays, planes, model, config, generator)
         training = LightTraining(initial, rays, settings, precision, generator, keeping, device, clock)
         quality = None if checked is None else partial(_quality, on_device(checked, training.device))
-        training.run(quality, max(1, training.n_steps // HISTORY_POINTS), monitor)
-        panels, at = training.panels, training.at
+
+        def so_far(panels: ReflectivePanels, health: MlpHealth | None = None) -> TrainedReflections:
+            at = training.at
+            return TrainedReflections(
+                panels,
+                model,
+                config,
+                planes,
+                exposure,
+                training.precision,
+                len(rays),
+                at.step,
+                at.spent_s,
+                tuple(QualityPoint(t_s, value) for t_s, value in at.history),
+                health,
+                tuple(at.notes),
+                training.transients,
+                training.decisions(),
+            )
+
+        show = None if look is None else lambda panels: look(so_far(panels))
+        training.run(quality, max(1, training.n_steps // HISTORY_POINTS), monitor, show)
         health = None
-        if panels.light is not None and isinstance(panels.light.light, ReflectionMlp):
+        if training.panels.light is not None and isinstance(training.panels.light.light, ReflectionMlp):
             some = _sample(rays, CHECKED, config.seed).middle()
-            health = panels.light.light.health(some.points, some.omega_r)
-    history = tuple(QualityPoint(t_s, value) for t_s, value in at.history)
-    return TrainedReflections(
-        panels,
-        model,
-        config,
-        planes,
-        exposure,
-        training.precision,
-        len(rays),
-        at.step,
-        at.spent_s,
-        history,
-        health,
-        tuple(at.notes),
-        training.transients,
-        training.decisions(),
-    )
+            health = training.panels.light.light.health(some.points, some.omega_r)
+        return so_far(training.panels, health)
 
 
 def _quality(rays: GlassRays, panels: ReflectivePanels) -> float:

@@ -101,7 +101,8 @@ class Callbacks:
     visit
         Called after each step, and again and again while it is paused; its time counts as the training's.
     show_before
-        Called with what there is to see before the first step: splats as they were placed, then as trials left them.
+        Called with what there is to see before the first step: splats as they were placed, then with the light that was
+        learned so far, and as trials left them.
     """
 
     monitor: Monitor = QUIET

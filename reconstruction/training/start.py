@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import hashlib
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -666,10 +667,7 @@ def _joint_trial(
         score_every_s=NEVER_S,
         checkpoint_every_s=NEVER_S,
     )
-    origin = model_origin(known_scene(source))
-    cameras = np.array([photo.pose.position_enu_m for photo in seen])
-    own = splats_from_tensors(splats_to_tensors(splats), str(source.folder))
-    warm_start_splats(light.panels, own, source.panels, origin, cameras)
+    origin, model = model_origin(known_scene(source)), _with_light(source, seen, splats, light, config)
     with_normals = config.losses.normal_prior > 0.0
     memory_bytes = config.memory_bytes // (2 * n_trials)
     settings = StreamSettings(memory_bytes, config.window_px, config.reduce, with_normals)
@@ -677,17 +675,28 @@ def _joint_trial(
     shown = held_out_views(source, scored, origin, memory_bytes, closing)
     timer = Timer(watch.clock)
     trainer = Trainer(
-        _joined(source, seen, own, light, None, origin, config),
+        model,
         Exposures([source.own_exposures.get(photo.name, 1.0) for photo in seen]),
         PoseCorrections(seen, origin),
         Transients([(photo.intrinsics.width_px, photo.intrinsics.height_px) for photo in seen]),
         photos,
-        strategy_of(short, len(own)),
+        strategy_of(short, len(model.splats)),
         short,
-        extent_m=_extent_m(cameras),
+        extent_m=_extent_m(np.array([photo.pose.position_enu_m for photo in seen])),
         watch=timer,
     )
     return _JointTrial(trainer, timer, shown)
+
+
+def _with_light(
+    source: PhotoSet, photos: Sequence[PosedPhoto], splats: Splats, light: TrainedReflections, config: TrainConfig
+) -> SceneModel:
+    """The model of copies of splats, which show what the light does."""
+    origin = model_origin(known_scene(source))
+    own = splats_from_tensors(splats_to_tensors(splats), str(source.folder))
+    cameras = np.array([photo.pose.position_enu_m for photo in photos])
+    warm_start_splats(light.panels, own, source.panels, origin, cameras)
+    return _joined(source, photos, own, light, None, origin, config)
 
 
 def with_white(config: TrainConfig, white: float) -> TrainConfig:
@@ -746,6 +755,10 @@ def _learned_light(
         )
     digest = checksum(rays)
     no_decisions: tuple[Decision, ...] = ()
+
+    def look(light: TrainedReflections) -> None:
+        _show(_with_light(source, learned, splats, light, config), config, show)
+
     if interrupted is None:
         name, decisions = config.light, no_decisions
         if name == "auto" and config.light_apart == "off":
@@ -754,6 +767,8 @@ def _learned_light(
             quick = replace(settings, transients="off", time_limit_s=_light_limit_s(config, watch))
             tried = try_lights(rays, source.panels, quick, monitor, device=config.tensors_on)
             name, decisions = ("environment-map", no_decisions) if tried is None else chosen(tried.trials)
+            if tried is not None and show is not unshown:
+                look(copy.deepcopy(tried.found[name]))
             if config.light_apart == "on":
                 decisions = (*decisions, decide(SeparateLight(), None, "on"))
             elif tried is not None and name != ALONE_MODEL and decisions[0].size < CLEAR_DB:
@@ -797,6 +812,7 @@ def _learned_light(
             keeping=keeping,
             device=config.tensors_on,
             clock=watch.clock,
+            look=None if show is unshown else look,
         )
     except ValueError as error:
         if interrupted is None:

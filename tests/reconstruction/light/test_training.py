@@ -1,12 +1,14 @@
 """Learning reflections: what is near needs places, what is far does not; the same bits again; ends that are clean."""
 
 import itertools
+import math
 from dataclasses import replace
 
 import pytest
 import torch
 
 from planning.base.errors import OperationCancelled, ReconstructionError
+from reconstruction.light import light_training
 from reconstruction.light.config import (
     LEAST_STEPS,
     PAPER_STAGES,
@@ -116,6 +118,46 @@ def test_a_time_limit_ends_it_with_what_there_is(plain):
     )
     assert trained.n_steps == 4
     assert trained.history[-1].t_s == 2.0
+
+
+@pytest.mark.few(1)
+@pytest.mark.parametrize("model", ["mlp", "environment-map", "harmonics", "radiance-grid"])
+def test_who_looks_sees_ever_more_and_changes_nothing(plain, model, monkeypatch):
+    monkeypatch.setattr(light_training, "LOOK_EVERY_S", 0.0)
+    monkeypatch.setattr(light_training, "LOOK_SHARE", math.inf)
+    rays, unseen, planes = plain
+    seen = []
+
+    def look(light):
+        assert not light.panels.training
+        seen.append((light.n_steps, score(light, unseen)))
+        for value in light.panels.parameters():
+            value.data.zero_()
+
+    looked = train_reflections(rays, planes, model, SHORT, look=look)
+    alone = train_reflections(rays, planes, model, SHORT)
+    assert all(torch.equal(a, b) for a, b in zip(weights(looked), weights(alone), strict=True))
+    assert [n_steps for n_steps, _ in seen] == list(range(1, SHORT.steps + 1))
+    assert seen[-1] == (SHORT.steps, pytest.approx(score(alone, unseen), abs=1e-3))
+    assert seen[-1][1] > seen[0][1]
+
+
+def test_looks_take_a_small_share_of_the_time(plain):
+    rays, _, planes = plain
+    ticks, seen = itertools.count(), []
+
+    def look(light):
+        seen.append(light.seconds)
+        for _ in range(12):
+            next(ticks)
+
+    # A step is a second, and a look some twelve.
+    config = replace(SHORT, steps=600, batch=8, time_limit_s=600.0)
+    train_reflections(rays, planes, "harmonics", config, clock=lambda: float(next(ticks)), look=look)
+    assert seen[0] == light_training.LOOK_EVERY_S
+    waits = [after - before for before, after in itertools.pairwise(seen)]
+    assert waits
+    assert min(waits) >= 12.0 / light_training.LOOK_SHARE
 
 
 def test_cancelling_ends_it_at_once(plain):
