@@ -226,7 +226,8 @@ BENCHMARK = Benchmark(
     "mirror images that differ from pane to pane, blinds, glare, shadows, clutter, missing profiles and panels; the "
     "camera's pose and the wall's surface are given, and the wall's extent with its masonry to 2 m, but not where in "
     "it the glass begins. Then real facades with annotated windows, as they are, where a panel is a window that the "
-    "network finds (it learned from every second photo of the offices). Pictures: truth blue, found orange, missed red; real photos are not shown. "
+    "network finds (it learned from every second photo of the offices). Pictures: truth blue, found orange, missed "
+    "red; real photos are not shown. "
     "Other methods' numbers stand here once somebody runs their weights: `score segmentation --masks` takes their "
     "masks.",
     measure,
