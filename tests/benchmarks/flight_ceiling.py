@@ -62,7 +62,7 @@ class Search:
 
 
 FULL = Search(
-    WorthRequest(SCENE, METHODS, (100,), ("radiance-grid", "splats"), n_seeds=N_SEEDS), 12, (20,) * 6 + (10,) * 16
+    WorthRequest(SCENE, METHODS, (100,), ("radiance-grid", "splats"), n_seeds=N_SEEDS), 12, (20,) * 4 + (10,) * 8
 )
 QUICK = Search(
     WorthRequest(SCENE, METHODS, (8,), ("radiance-grid",), n_seeds=2, n_unseen=6, seconds=1.0, plan_s=2.0), 2, (4,)
