@@ -65,7 +65,7 @@ FULL = Search(
     WorthRequest(SCENE, METHODS, (100,), ("radiance-grid", "splats"), n_seeds=N_SEEDS), 12, (20,) * 3 + (10,) * 5
 )
 QUICK = Search(
-    WorthRequest(SCENE, METHODS, (8,), ("radiance-grid",), n_seeds=2, n_unseen=6, seconds=1.0, plan_s=2.0), 2, (4,)
+    WorthRequest(SCENE, METHODS, (8,), ("radiance-grid",), n_seeds=1, n_unseen=6, seconds=1.0, plan_s=2.0), 1, (4,)
 )
 N_TRIED = 2
 
