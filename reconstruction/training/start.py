@@ -759,6 +759,7 @@ def _learned_light(
     def look(light: TrainedReflections) -> None:
         _show(_with_light(source, learned, splats, light, config), config, show)
 
+    is_watched = show is not unshown
     if interrupted is None:
         name, decisions = config.light, no_decisions
         if name == "auto" and config.light_apart == "off":
@@ -767,7 +768,7 @@ def _learned_light(
             quick = replace(settings, transients="off", time_limit_s=_light_limit_s(config, watch))
             tried = try_lights(rays, source.panels, quick, monitor, device=config.tensors_on)
             name, decisions = ("environment-map", no_decisions) if tried is None else chosen(tried.trials)
-            if tried is not None and show is not unshown:
+            if tried is not None and is_watched:
                 look(copy.deepcopy(tried.found[name]))
             if config.light_apart == "on":
                 decisions = (*decisions, decide(SeparateLight(), None, "on"))
@@ -812,7 +813,7 @@ def _learned_light(
             keeping=keeping,
             device=config.tensors_on,
             clock=watch.clock,
-            look=None if show is unshown else look,
+            look=look if is_watched else None,
         )
     except ValueError as error:
         if interrupted is None:

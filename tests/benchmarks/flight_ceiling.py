@@ -68,6 +68,12 @@ QUICK = Search(
     WorthRequest(SCENE, METHODS, (8,), ("radiance-grid",), n_seeds=1, n_unseen=6, seconds=1.0, plan_s=2.0), 1, (4,)
 )
 N_TRIED = 2
+"""Exchanges in each round, of which the better one counts."""
+
+POOL = "pool"
+"""Folder of the photos of all flights."""
+
+IN_WORDS: dict[Light, str] = {"radiance-grid": "light alone", "splats": "joint splats"}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,10 +97,6 @@ def opened(kept: Path) -> Pool:
     source = read_photo_set(kept / POOL)
     unseen = {kind: read_photo_set(folder) for kind, folder in unseen_folders(kept).items()}
     return Pool(source, glass_rays(source, source.photos), unseen)
-
-
-POOL = "pool"
-"""Folder of the photos of all flights."""
 
 
 def unseen_folders(kept: Path) -> dict[UnseenKind, Path]:
@@ -212,9 +214,6 @@ def measure(context: Context) -> Iterator[Row]:
             mean = statistics.fmean(each)
             above = f"{mean - sections:+.2f} dB above sections"
             yield Row(SCENE, f"{IN_WORDS[light]}: {name}", round(mean, 2), "dB", None, above, seeds=len(each))
-
-
-IN_WORDS: dict[Light, str] = {"radiance-grid": "light alone", "splats": "joint splats"}
 
 
 def _sets(tried: Trials, flights: Sequence[FlightResult], search: Search) -> Iterator[tuple[str, Chosen]]:
