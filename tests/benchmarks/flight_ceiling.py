@@ -17,6 +17,7 @@ import torch
 from groundstation.services.scenes.views import as_written
 from groundstation.services.worth import FlightResult, FlightTrial, WorthRequest, kept_folder, worth_tradeoff
 from planning.aircraft.catalogue import profile
+from planning.base.files import make_folder
 from planning.base.jit import n_threads
 from planning.base.json_file import read_json, write_atomically
 from planning.parameters import DEFAULT_PROFILE, Constraints
@@ -92,16 +93,16 @@ class Pool:
 
 
 @cache
-def opened(kept: Path) -> Pool:
+def opened(place: Path) -> Pool:
     """The pool of a folder, once in a process."""
-    source = read_photo_set(kept / POOL)
-    unseen = {kind: read_photo_set(folder) for kind, folder in unseen_folders(kept).items()}
+    source = read_photo_set(place / POOL)
+    unseen = {kind: read_photo_set(folder) for kind, folder in unseen_folders(place).items()}
     return Pool(source, glass_rays(source, source.photos), unseen)
 
 
-def unseen_folders(kept: Path) -> dict[UnseenKind, Path]:
-    """Where unseen views were photographed."""
-    return {kind: kept / f"unseen-{kind}" / "photos" for kind in UNSEEN_KINDS}
+def unseen_folders(place: Path) -> dict[UnseenKind, Path]:
+    """Where unseen views were photographed, beside the folder of the sets."""
+    return {kind: place.parent / f"unseen-{kind}" / "photos" for kind in UNSEEN_KINDS}
 
 
 def photograph_all(folder: Path, views: ViewpointArrays, width_px: int) -> Path:
@@ -112,25 +113,25 @@ def photograph_all(folder: Path, views: ViewpointArrays, width_px: int) -> Path:
     return photograph(scene, shots_of(views), ready, width_px, folder, companions=companions)
 
 
-def photographed(kept: Path, chosen: Chosen, name: str, width_px: int) -> Path:
+def photographed(place: Path, chosen: Chosen, name: str, width_px: int) -> Path:
     """A folder with the photos of a set."""
-    views = views_of(kept / POOL)
+    views = views_of(place / POOL)
     if len(chosen) == len(views.heading_rad):
-        return kept / POOL
-    return photograph_all(kept / name.replace(" ", "-"), take(views, np.array(chosen)), width_px)
+        return place / POOL
+    return photograph_all(place / name.replace(" ", "-"), take(views, np.array(chosen)), width_px)
 
 
-def light_db(kept: Path, chosen: Chosen, seed: int) -> float:
+def light_db(place: Path, chosen: Chosen, seed: int) -> float:
     """PSNR of unseen views by light alone, the mean of the kinds."""
-    pool = opened(kept)
+    pool = opened(place)
     learned = pool.learned(chosen, seed)
     means = [score_views(learned, each, [p.name for p in each.photos]).mean_db for each in pool.unseen.values()]
     return statistics.fmean(means)
 
 
-def splats_db(kept: Path, photos: Path, seed: int, seconds: float) -> float:
+def splats_db(place: Path, photos: Path, seed: int, seconds: float) -> float:
     """PSNR of unseen views by joint splats, the mean of the kinds."""
-    return statistics.fmean(model_quality("splats", photos, unseen_folders(kept), seed, seconds).values())
+    return statistics.fmean(model_quality("splats", photos, unseen_folders(place), seed, seconds).values())
 
 
 def in_order(numbers: Sequence[int] | np.ndarray) -> Chosen:
@@ -141,15 +142,15 @@ def in_order(numbers: Sequence[int] | np.ndarray) -> Chosen:
 class Trials:
     """PSNR by set of photos, light alone; what was tried stays in a file, with which the next run goes on."""
 
-    def __init__(self, kept: Path, workers: ProcessPoolExecutor) -> None:
-        self._kept, self._workers, self._path = kept, workers, kept / "tried.json"
+    def __init__(self, place: Path, workers: ProcessPoolExecutor) -> None:
+        self._place, self._workers, self._path = place, workers, place / "tried.json"
         self._known: dict[str, float] = read_json(self._path) if self._path.is_file() else {}
 
     def of(self, sets: Sequence[Chosen], seed: int = 0) -> list[float]:
         """Several at a time."""
         keys = [json.dumps([seed, *chosen]) for chosen in sets]
         asked = {
-            key: self._workers.submit(light_db, self._kept, chosen, seed)
+            key: self._workers.submit(light_db, self._place, chosen, seed)
             for key, chosen in zip(keys, sets, strict=True)
             if key not in self._known
         }
@@ -185,12 +186,14 @@ def measure(context: Context) -> Iterator[Row]:
     request = search.request
     flights, kept = worth_tradeoff(request, KEPT, n_processes=n_threads()).found, kept_folder(request, KEPT)
     trials = [FlightTrial(f.planner, f.n_views, f.seed, f.flown) for f in flights]
+    place = kept / f"sets-of-{search.n_photos}-{request.n_seeds}"
+    make_folder(place)
     photograph_all(
-        kept / POOL, concatenate([views_of(kept / trial.name / "photos") for trial in trials]), request.width_px
+        place / POOL, concatenate([views_of(kept / trial.name / "photos") for trial in trials]), request.width_px
     )
     # A process that was forked would share torch's threads, which do not live on in it.
     with ProcessPoolExecutor(n_threads(), multiprocessing.get_context("spawn")) as workers:
-        tried = Trials(kept, workers)
+        tried = Trials(place, workers)
         sets = dict(_sets(tried, flights, search))
         seeds = range(request.n_seeds)
         by_seed = [tried.of([*sets.values()], seed) for seed in seeds]
@@ -199,11 +202,11 @@ def measure(context: Context) -> Iterator[Row]:
         }
         if "splats" in request.lights:
             folders = {
-                name: workers.submit(photographed, kept, chosen, name, request.width_px)
+                name: workers.submit(photographed, place, chosen, name, request.width_px)
                 for name, chosen in sets.items()
             }
             asked = {
-                name: [workers.submit(splats_db, kept, folder.result(), seed, request.seconds) for seed in seeds]
+                name: [workers.submit(splats_db, place, folder.result(), seed, request.seconds) for seed in seeds]
                 for name, folder in folders.items()
             }
             found["splats"] = {name: [each.result() for each in of_set] for name, of_set in asked.items()}
