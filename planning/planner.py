@@ -26,6 +26,7 @@ from planning.coverage.evaluate import DepthCount, Sight, coverage_of_sights, de
 from planning.coverage.image_error import ImageErrorModel
 from planning.coverage.positions import rounded
 from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
+from planning.coverage.sections import SectionGrid
 from planning.geo.frames import wrap_heading_deg
 from planning.motion.timing import motion_limits, round_trip_metric
 from planning.parameters import DEFAULT_SHARE, DEFAULT_VIEWS
@@ -197,9 +198,12 @@ REACHABILITY_SHARE, ROUTING_SHARE, REROUTING_SHARE, FINISHING_SHARE = 0.3, 0.3, 
 """Parts of the time budget: what proofs of what can be reached may take at most; what is kept for routing, less where
 views were chosen by their routes; and what a choice of views takes to come to its end once it was asked to."""
 
-ENDING_SHARE = 1.0
-"""Of the time that a program spent before it planned, kept for what it does behind it: worth, proof and writing. Both
-grow with the size of a site and with the slowness of a computer."""
+ENDING_SHARE, SECTIONS_FOR_AS_LONG, TRIANGLES_FOR_AS_LONG = 0.6, 150_000, 75_000
+"""Of the time that a program spent before it planned, which grows with the slowness of a computer, kept for what it
+does behind it: worth, proof and writing. As long again for so many sections of the site, and for so many triangles."""
+
+LEAST_CHOOSING_S = 0.5
+"""A choice of views that would get less is made from few candidates."""
 
 LOOKING_SHARE = 0.5
 """Of the time for ways to views: how long straight legs between these are looked at."""
@@ -299,17 +303,18 @@ def plan_flight(
     chosen_profile = profile(request.profile_id)
     _check_method(request)
     spent_s = 0.0 if started_s is None else time.perf_counter() - started_s
-    limit = TimeLimit(request.time_budget_s - (1.0 + ENDING_SHARE) * spent_s)
+    limit = TimeLimit(request.time_budget_s - spent_s - _ending_share(site_model, request) * spent_s)
     watch = _Timer()
     prepared = first_reusable(() if prepared is None else (prepared,), site_model, request)
+    routing_share, routing_s = _time_of_routing(request)
+    finishing_s = FINISHING_SHARE * request.time_budget_s
     if prepared is None:
         proving = any_of(stop, TimeLimit(REACHABILITY_SHARE * limit.remaining_s()))
         prepared = _prepared(site_model, request, chosen_profile, proving, monitor)
     watch.lap("reachability")
     trace.record_bound(prepared.problem.reachability.upper_bound)
-    routing_share, routing_s = _time_of_routing(request)
-    finishing_s = FINISHING_SHARE * request.time_budget_s
-    choosing = TimeLimit(max(0.1, limit.remaining_s() - routing_s - finishing_s), also=stop)
+    choosing_s = limit.remaining_s() - routing_s - finishing_s
+    choosing = TimeLimit(choosing_s if choosing_s > LEAST_CHOOSING_S else 0.0, also=stop)
     problem = prepared.problem
     judged = cache(partial(image_error_model, problem, site_model, request.greedy.surroundings, request.seed, photos))
     if request.least_gain_db is not None:
@@ -364,6 +369,13 @@ def plan_flight(
         found.is_cut_short,
         found.are_all_taken,
     )
+
+
+def _ending_share(site_model: SiteModel, request: PlanRequest) -> float:
+    """Of the time before a plan, what is kept for that behind it."""
+    n_sections = site_model.site.n_panels * SectionGrid(request.constraints.section_step_deg).n_sections
+    n_triangles = sum(len(mesh.triangles) for mesh in (site_model.building, *site_model.obstacles))
+    return ENDING_SHARE + n_sections / SECTIONS_FOR_AS_LONG + n_triangles / TRIANGLES_FOR_AS_LONG
 
 
 def _time_of_routing(request: PlanRequest) -> tuple[float, float]:

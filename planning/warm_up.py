@@ -25,7 +25,7 @@ from planning.motion import speed_profile
 from planning.parameters import DEFAULT_PROFILE, Constraints, GreedyParameters, Precision
 from planning.plan import Sortie, Viewpoint, ViewpointArrays
 from planning.planner import plan_flight
-from planning.proof import boxes, separation
+from planning.proof import boxes, make, separation
 from planning.request import PlanRequest
 from planning.routing import at_once, lower_bound, orienteering, sorties, tour
 from planning.site.bundled import SCENES
@@ -83,7 +83,7 @@ def compile_kernels() -> None:
     field.heights_m(np.ones((1, 3)))
     field.spread_departures(np.ones((1, 3)), np.zeros((2, 2)), np.zeros((2, 2)), np.zeros((1, 1)))
     # The last one says that all are there: see `groundstation.services.plan.planning.compile_once`.
-    for module in (at_once, boxes, lower_bound, orienteering, sorties, speed_profile, tour, separation):
+    for module in (at_once, boxes, lower_bound, make, orienteering, sorties, speed_profile, tour, separation):
         module.compile_kernels()
 
 

@@ -7,12 +7,12 @@ glazing, flat and clean (`REFRACTIVE_INDEX`); beyond the site's bodies is sky.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from planning.base.jit import chunks
+from planning.base.jit import chunks, run_chunks
 from planning.coverage.sections import PanelFrames
 from planning.geo.frames import camera_axes
 from planning.geo.mesh import TriangleMesh, join
@@ -35,8 +35,8 @@ before them."""
 LEAST_COSINE = 0.02
 """Of the angle of incidence; rays that graze more say nothing."""
 
-RAYS_AT_ONCE = 1_000_000
-"""About 100 MB."""
+RAYS_AT_ONCE = 50_000
+"""Of each thread: about 5 MB."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,10 +104,9 @@ class Surroundings:
     def rays(self, views: ViewpointArrays, camera: Camera, columns: int, rows: int) -> MirroredRays:
         """Through `columns` x `rows` pixels of each view, those that show a pane from before it."""
         n = len(views.heading_rad)
-        parts = [
-            self._rays(views, camera, columns, rows, start, stop)
-            for start, stop in chunks(n, max(1, RAYS_AT_ONCE // (columns * rows)))
-        ]
+        ranges = chunks(n, max(1, RAYS_AT_ONCE // (columns * rows)))
+        _ = self._caster  # built before threads ask for it
+        parts = run_chunks(partial(self._rays, views, camera, columns, rows), ranges)
         found = [np.concatenate(column) for column in zip(*parts, strict=True)] if parts else list(_NO_RAYS)
         return MirroredRays(n, columns * rows, *found)
 

@@ -303,6 +303,10 @@ def codes_all_around(model: CoverageModel, points_enu_m: NDArray[np.float64]) ->
     return codes
 
 
+EXACT_PAIRS_AT_ONCE = 100_000
+"""Of views and panels, for each thread: some 50 MB."""
+
+
 def exact_sections(model: CoverageModel, views: ViewpointArrays) -> NDArray[np.int64]:
     """Section of each panel that each view covers, by the definition in float64: shape (n, m), -1 for none.
 
@@ -310,11 +314,14 @@ def exact_sections(model: CoverageModel, views: ViewpointArrays) -> NDArray[np.i
     """
     n, m = len(views.positions_enu_m), len(model.frames)
     section = np.full((n, m), NOT_SEEN, np.int64)
-    for start, stop in chunks(n, max(1, 200_000 // max(m, 1))):
+
+    def fill(start: int, stop: int) -> None:
         part = _rows(views, start, stop)
         section[start:stop] = sections_seen(
             part, model.frames, model.camera, model.grid, model.whole_panel, model.max_distance_m
         )
+
+    run_chunks(fill, chunks(n, max(1, EXACT_PAIRS_AT_ONCE // max(m, 1))))
     if model.sight is not None:
         view, panel = np.nonzero(section != NOT_SEEN)
         free = model.sight(views.positions_enu_m[view], model.targets_enu_m[panel])

@@ -119,15 +119,24 @@ def sections_of(points_enu_m: Array, panels: PanelFrames, grid: SectionGrid) -> 
     section
         Shape (n, m); `NOT_SEEN` where the point lies on or behind the panel's plane, or at its centroid.
     """
-    rays = points_enu_m[:, None, :] - panels.centroids[None, :, :]
-    distance = np.linalg.norm(rays, axis=2)
+    n, m = len(points_enu_m), len(panels)
+    point, panel = np.repeat(np.arange(n), m), np.tile(np.arange(m), n)
+    return _section_of(points_enu_m[point], panels, panel, grid).reshape(n, m)
+
+
+def _section_of(
+    points_enu_m: Array, panels: PanelFrames, of: NDArray[np.int64], grid: SectionGrid
+) -> NDArray[np.int64]:
+    """Section of the hemisphere of panel `of[i]` in which point i lies, shape (k,)."""
+    rays = points_enu_m - panels.centroids[of]
+    distance = np.linalg.norm(rays, axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        d = rays / distance[:, :, None]
-    cosine = np.einsum("nmk,mk->nm", d, panels.normals)
-    theta = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
-    phi = np.degrees(
-        np.arctan2(np.einsum("nmk,mk->nm", d, panels.bitangents), np.einsum("nmk,mk->nm", d, panels.tangents))
+        d = rays / distance[:, None]
+    along, across, upwards = (
+        np.einsum("ik,ik->i", d, axes[of]) for axes in (panels.normals, panels.tangents, panels.bitangents)
     )
+    theta = np.degrees(np.arccos(np.clip(along, -1.0, 1.0)))
+    phi = np.degrees(np.arctan2(upwards, across))
     phi = np.where(phi < 0.0, phi + 360.0, phi)
     in_front = (distance > 0.0) & (theta < 90.0)
     with np.errstate(invalid="ignore"):
@@ -164,11 +173,13 @@ def sections_seen(
     max_distance_m: float | None = None,
 ) -> NDArray[np.int64]:
     """Section of each panel that each view covers, without occlusion: shape (n, m), `NOT_SEEN` where it covers none."""
-    section = sections_of(views.positions_enu_m, panels, grid)
     seen = in_picture(views, panels.centroids, camera)
     if whole_panel:
         seen &= in_picture(views, panels.corners, camera).all(axis=2)
     if max_distance_m is not None:
         distance = np.linalg.norm(views.positions_enu_m[:, None, :] - panels.centroids[None, :, :], axis=2)
         seen &= distance <= max_distance_m
-    return np.where(seen, section, NOT_SEEN)
+    view, panel = np.nonzero(seen)
+    section = np.full(seen.shape, NOT_SEEN, np.int64)
+    section[view, panel] = _section_of(views.positions_enu_m[view], panels, panel, grid)
+    return section

@@ -75,6 +75,8 @@ class RayCaster:
             self._scene.add_triangles(
                 self._tensor(corners), self._tensor(np.ascontiguousarray(mesh.triangles, np.uint32))
             )
+            # Its tree is built with the first ray, which threads must not do at once.
+            self._scene.test_occlusions(self._tensor(np.ones((1, 6), np.float32)))
 
     def cast(self, origins_enu_m: Array, directions_enu: Array) -> Hits:
         """First hits of rays, both shape (n, 3); directions of any length but zero."""

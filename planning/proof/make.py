@@ -18,13 +18,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.base.files import read_input_file
-from planning.base.jit import chunks, run_parallel
+from planning.base.jit import chunks, kernel, run_chunks, run_parallel
 from planning.base.json_file import JSON_FILE
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.coverage.reach_kernel import REACHABLE, UNREACHABLE
 from planning.coverage.reachability import Reachability, convex_groups
 from planning.geo.bvh import Bvh, build_bvh
+from planning.geo.frames import camera_axes
 from planning.geo.mesh import row_numbers
 from planning.proof.boxes import CONE, CUT_X, LOW, PLANE, Panel, Shadows, Terrain, exclude, no_shadows
 from planning.proof.reflight_verify import Case, Pane, Refused
@@ -52,7 +53,7 @@ RETURN_SHARES = (1.0, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5)
 
 SECTIONS_PER_CHUNK = 16
 
-PAIRS_PER_CHUNK = 50_000
+PAIRS_PER_CHUNK = 200_000
 """Of views and panels that are looked at together."""
 
 
@@ -273,52 +274,106 @@ def _best_views(case: Case) -> tuple[NDArray[np.int64], ...]:
     elements, starts, views
         The views of section `elements[i]` are `views[starts[i] : starts[i + 1]]`.
     """
-    panes, n, rings = case.panes, case.n, case.rings
-    c, normal, t, b = (np.array([getattr(pane, name) for pane in panes]) for name in ("c", "n", "t", "b"))
-    corners = np.array([pane.corners for pane in panes])
-    sines, cosines = np.array([case.angle(k) for k in range(4 * rings + 1)]).T
+    panes, n_sectors = case.panes, 4 * case.rings
+    points = np.array([[pane.c, *(pane.corners if case.whole else ())] for pane in panes])
+    axes = np.array([[pane.n, pane.t, pane.b] for pane in panes])
+    edges = np.array([case.angle(k) for k in range(n_sectors + 1)])
     places = np.array([place for _, place, _, _ in case.views]).reshape(-1, 3)
     heading, pitch = np.radians([view[2:] for view in case.views]).reshape(-1, 2).T
-    forward = np.stack([np.cos(pitch) * np.sin(heading), np.cos(pitch) * np.cos(heading), np.sin(pitch)], axis=1)
-    right = np.stack([np.cos(heading), -np.sin(heading), np.zeros(len(places))], axis=1)
-    axes = np.stack([forward, right, np.cross(right, forward)], axis=2)
+    looks = np.stack(camera_axes(heading, pitch), axis=1)
+    limits = np.array([case.far_m, *case.half])
+
+    def of_views(start: int, stop: int) -> tuple[NDArray[np.int64], Array, NDArray[np.int64]]:
+        section, slack = _unfilled(stop - start, len(panes))
+        _to_spare(points, axes, edges, limits, places[start:stop], looks[start:stop], section, slack)
+        view, panel = np.nonzero(slack > SLACK_M)
+        return panel * case.n + section[view, panel], slack[view, panel], start + view
+
     found = [(np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int64))]
-    for start, stop in chunks(len(places), max(1, PAIRS_PER_CHUNK // len(panes))):
-        d = places[start:stop, None] - c
-        in_picture = _in_picture(case, -d @ axes[start:stop])
-        number, panel = np.nonzero(np.minimum(case.far_m - np.linalg.norm(d, axis=2), in_picture) > SLACK_M)
-        d = d[number, panel]
-        number += start
-        away = np.linalg.norm(d, axis=1)
-        along, u, v = ((d * axis[panel]).sum(axis=1) for axis in (normal, t, b))
-        theta = np.arccos(np.clip(along / np.maximum(away, 1e-12), -1.0, 1.0))
-        ring = np.clip((theta / (0.5 * math.pi) * rings).astype(int), 0, rings - 1)
-        sector = np.clip(
-            (np.mod(np.arctan2(v, u), 2 * math.pi) / (0.5 * math.pi) * rings).astype(int), 0, 4 * rings - 1
-        )
-        slack = np.minimum(along, case.far_m - away)
-        slack = np.minimum(slack, cosines[sector] * v - sines[sector] * u)
-        slack = np.minimum(slack, sines[sector + 1] * u - cosines[sector + 1] * v)
-        slack = np.where(ring > 0, np.minimum(slack, cosines[ring] * away - along), slack)
-        slack = np.minimum(slack, along - cosines[ring + 1] * away)
-        points = np.concatenate([c[panel, None], corners[panel]], axis=1) if case.whole else c[panel, None]
-        in_picture = _in_picture(case, (points - places[number, None]) @ axes[number])
-        slack = np.minimum(slack, in_picture.min(axis=1))
-        kept = np.flatnonzero(slack > SLACK_M)
-        elements = panel[kept] * n + ring[kept] * 4 * rings + sector[kept]
-        found.append((elements, slack[kept], number[kept]))
+    found += run_chunks(of_views, chunks(len(places), max(1, PAIRS_PER_CHUNK // len(panes))))
     elements, slacks, views = (np.concatenate(each) for each in zip(*found, strict=True))
-    order = np.lexsort((views, -slacks, elements))
+    order = np.lexsort((-slacks, elements))
     elements, starts = np.unique(elements[order], return_index=True)
     return elements, np.append(starts, len(order)), views[order]
 
 
-def _in_picture(case: Case, points: Array) -> Array:
-    """How far points are inside a picture, of their depth, across and upwards, shape (..., 3)."""
-    depth, across, upwards = np.moveaxis(points, -1, 0)
-    sides = np.minimum(case.half[0] * depth - np.abs(across), case.half[1] * depth - np.abs(upwards))
-    inside: Array = np.minimum(depth, sides)
-    return inside
+def _unfilled(n_views: int, n_panels: int) -> tuple[NDArray[np.int64], Array]:
+    return np.empty((n_views, n_panels), np.int64), np.empty((n_views, n_panels))
+
+
+@kernel
+def _to_spare(
+    points: Array,
+    axes: Array,
+    edges: Array,
+    limits: Array,
+    places: Array,
+    looks: Array,
+    section: NDArray[np.int64],
+    slack: Array,
+) -> None:
+    """The section in which each view stands before each pane, and by how much it keeps all that it must keep, metres.
+
+    Parameters
+    ----------
+    points
+        What has to be in the picture, the pane's middle first, shape (m, 1 or 5, 3).
+    axes
+        Normal, tangent and bitangent of each pane, shape (m, 3, 3).
+    edges
+        Sines and cosines of the angles between rings and between sectors, shape (4 rings + 1, 2).
+    limits
+        The largest distance, and how far a picture reaches to the side and upwards at a depth of 1.
+    places, looks
+        Of the views: positions, shape (n, 3), and unit vectors forwards, to the right and upwards, shape (n, 3, 3).
+    section, slack
+        Written to, shape (n, m). What is surely not seen has less than 0, and section 0.
+    """
+    n_sectors = len(edges) - 1
+    rings = n_sectors // 4
+    for i in range(len(places)):
+        for j in range(len(points)):
+            section[i, j] = 0
+            spare = np.inf
+            for k in range(points.shape[1]):
+                depth = across = upwards = 0.0
+                for axis in range(3):
+                    d = points[j, k, axis] - places[i, axis]
+                    depth += d * looks[i, 0, axis]
+                    across += d * looks[i, 1, axis]
+                    upwards += d * looks[i, 2, axis]
+                beside = min(limits[1] * depth - abs(across), limits[2] * depth - abs(upwards))
+                spare = min(spare, depth, beside)
+                if spare < 0.0:
+                    break
+            along = u = v = away2 = 0.0
+            for axis in range(3):
+                d = places[i, axis] - points[j, 0, axis]
+                away2 += d * d
+                along += d * axes[j, 0, axis]
+                u += d * axes[j, 1, axis]
+                v += d * axes[j, 2, axis]
+            away = math.sqrt(away2)
+            slack[i, j] = min(spare, along, limits[0] - away)
+            if slack[i, j] < 0.0:
+                continue
+            theta = math.acos(min(1.0, along / max(away, 1e-12)))
+            ring = min(int(theta / (0.5 * math.pi) * rings), rings - 1)
+            phi = math.atan2(v, u)
+            sector = min(int((phi if phi >= 0.0 else phi + 2.0 * math.pi) / (0.5 * math.pi) * rings), n_sectors - 1)
+            section[i, j] = ring * n_sectors + sector
+            spare = min(
+                edges[sector, 1] * v - edges[sector, 0] * u, edges[sector + 1, 0] * u - edges[sector + 1, 1] * v
+            )
+            if ring > 0:
+                spare = min(spare, edges[ring, 1] * away - along)
+            slack[i, j] = min(slack[i, j], spare, along - edges[ring + 1, 1] * away)
+
+
+def compile_kernels() -> None:
+    """Run every kernel on small inputs."""
+    one = np.ones((1, 1, 3))
+    _to_spare(one, np.eye(3)[None], np.ones((5, 2)), np.ones(3), one[0], np.eye(3)[None], *_unfilled(1, 1))
 
 
 class _Patches:

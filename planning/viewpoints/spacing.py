@@ -82,15 +82,18 @@ class SpacingRule(NamedTuple):
 
     def is_too_close(self, point_enu_m: NDArray[np.float64]) -> bool:
         """Whether a place, shape (3,), is too close to any of those taken."""
-        return self.spacing_m > 0.0 and bool(self.are_too_close(point_enu_m[None])[0])
+        away_m = np.linalg.norm(self.present_enu_m - point_enu_m, axis=1)
+        return bool(((away_m > 0.0) & (away_m < self.spacing_m)).any())
 
     def are_too_close(self, points_enu_m: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Whether places, shape (m, 3), are too close to any of those taken."""
-        from scipy.spatial.distance import cdist
+        from scipy.spatial import cKDTree
 
         if self.spacing_m <= 0.0 or len(self.present_enu_m) == 0:
             return np.zeros(len(points_enu_m), np.bool_)
-        away_m = cdist(points_enu_m, self.present_enu_m)
+        # The nearest but one counts where the nearest is at the very place.
+        places = cKDTree(np.unique(self.present_enu_m, axis=0))
+        away_m = np.asarray(places.query(points_enu_m, k=[1, 2], distance_upper_bound=self.spacing_m)[0])
         return np.asarray(((away_m > 0.0) & (away_m < self.spacing_m)).any(axis=1))
 
     def of_others(self, positions_enu_m: NDArray[np.float64], but: int) -> SpacingRule:

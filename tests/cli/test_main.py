@@ -350,3 +350,34 @@ def test_findings_errors_and_the_brief_are_german_where_that_is_asked_for(reflig
     assert "Flugblatt" in page or "Flugbriefing" in page or "Start und Landung" in page
     assert "Take-off and landing" not in page
     assert "error: " in reflight("check", tmp_path / "nope.json", tmp_path / "nope.json").err
+
+
+ENDING = """
+import atexit, sys
+from groundstation.__main__ import run
+from groundstation.cli import main
+
+class Held:
+    def __del__(self):
+        print("freed")
+
+build_parser = main.build_parser
+
+def build_parser_and_register():
+    atexit.register(lambda: print("last words"))
+    return build_parser()
+
+main.build_parser = build_parser_and_register
+held = Held()
+sys.argv = ["reflight", *sys.argv[1:]]
+sys.exit(run())
+"""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status"), [(["--version"], 0), (["check", "no-plan", "no-site"], 1), (["-x"], 2)]
+)
+def test_a_command_ends_behind_all_that_is_still_to_be_done_and_frees_nothing_one_by_one(arguments, status):
+    command = [sys.executable, "-c", ENDING, *arguments]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout.splitlines()[-1:]) == (status, ["last words"])

@@ -320,3 +320,14 @@ def test_an_aircraft_without_the_rule_is_not_held_to_it() -> None:
     assert free[0] >= kept[0]
     assert profile("m3e").aircraft.min_waypoint_spacing_m == 0.5
     assert profile("ardupilot").aircraft.min_waypoint_spacing_m == profile("px4").aircraft.min_waypoint_spacing_m == 0.0
+
+
+@given(st.integers(0, 10**6), st.integers(0, 12), st.sampled_from([0.0, 0.5, 2.0]))
+def test_places_too_close_are_those_that_all_distances_tell(seed, n_present, spacing_m):
+    """Whole numbers: many stand at one place, and many exactly as far apart as they must."""
+    rng = np.random.default_rng(seed)
+    present, places = (rng.integers(0, 4, (n, 3)) * 0.5 for n in (n_present, 20))
+    rule = SpacingRule(places, present, spacing_m)
+    away_m = cdist(places, present)
+    wanted = ((away_m > 0.0) & (away_m < spacing_m)).any(axis=1)
+    assert rule.are_too_close(places).tolist() == wanted.tolist() == [rule.is_too_close(place) for place in places]
