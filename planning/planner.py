@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 import time
 from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import cache, partial
@@ -330,16 +331,16 @@ def plan_flight(
     if len(views.heading_rad) == 0:
         raise nothing_to_see()
     n_chosen = len(views.heading_rad)
-    # What does not depend on ways comes before these, so that they get the time that is left.
-    error, decision = judged()
     if found.legs is None and limit.remaining_s() < routing_s + routing_share * request.time_budget_s:
         views = _that_can_be_routed(
             problem, views, chosen_for, request, chosen_profile, limit.remaining_s() - DRAWING_S
         )
     n_routed = len(views.heading_rad)
-    seen = _seen(problem, views, request.locked)
     watch.lap("views")
-    flights = _route(problem, views, found.legs, request, chosen_profile, limit, routing_s, stop, monitor)
+    with ThreadPoolExecutor(1) as beside:  # neither depends on ways between views
+        about_views = beside.submit(lambda: (_seen(problem, views, request.locked), judged()))
+        flights = _route(problem, views, found.legs, request, chosen_profile, limit, routing_s, stop, monitor)
+    seen, (error, decision) = about_views.result()
     while request.n_batteries is not None and len(flights) > request.n_batteries:
         flights = best_flights(problem.model, views, flights, request.n_batteries, n_locked, chosen_for)
         if len(flights) > request.n_batteries:  # all of them have locked views

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -127,12 +128,16 @@ class FreeSpace:
 def unchecked_space(model: SiteModel, min_distance_m: float) -> FreeSpace:
     """Space of a site as it is, whether or not its home can be used, in the whole airspace: for measuring plans."""
     site = model.site
-    solids = Solids.of(
-        np.concatenate([panel_triangles(panel_corners(site)), join([model.building, *model.obstacles]).corners_enu_m])
-    )
-    no_fly = Solids.of(join([zone.prism() for zone in no_fly_volumes(model)]).corners_enu_m)
     low, high, home = (np.array(p) for p in (site.airspace.min_enu_m, site.airspace.max_enu_m, site.home_enu_m))
-    return FreeSpace(low, high, solids, no_fly, min_distance_m, min_distance_m, home, ground_of(site))
+    return FreeSpace(low, high, *_bodies(model), min_distance_m, min_distance_m, home, ground_of(site))
+
+
+@lru_cache(maxsize=2)  # what plans a flight, proves it and checks it asks for those of one site each time
+def _bodies(model: SiteModel) -> tuple[Solids, Solids]:
+    """What stands on a site, and its no-fly volumes."""
+    meshes = join([model.building, *model.obstacles])
+    stands = Solids.of(np.concatenate([panel_triangles(panel_corners(model.site)), meshes.corners_enu_m]))
+    return stands, Solids.of(join([zone.prism() for zone in no_fly_volumes(model)]).corners_enu_m)
 
 
 def free_space(model: SiteModel, min_distance_m: float, min_height_m: float | None = None) -> FreeSpace:
