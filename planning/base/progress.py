@@ -40,6 +40,21 @@ class _Quiet:
 QUIET: Monitor = _Quiet()
 
 
+@dataclass(frozen=True, slots=True)
+class PartOf:
+    """Takes the progress of a part for that of a longer stage, from the share `start` of it to the share `end`."""
+
+    monitor: Monitor
+    stage: str
+    start: float
+    end: float
+
+    def report(self, _stage: str, done: float, total: float) -> None:
+        """Say how far the longer stage is."""
+        share = min(1.0, done / total) if total > 0.0 else 0.0
+        self.monitor.report(self.stage, self.start + share * (self.end - self.start), 1.0)
+
+
 def never() -> bool:
     """Stop criterion that lets the algorithm end by itself."""
     return False

@@ -18,7 +18,7 @@ from scipy.special import stdtrit
 
 from planning.base.effects import Assessment, Decision, Effect, EffectSetting, decide
 from planning.base.messages import say
-from planning.base.progress import QUIET, Clock, Monitor
+from planning.base.progress import QUIET, Clock, Monitor, PartOf
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.light.config import ReflectionConfig
 from reconstruction.light.glass_rays import GlassRays, numbers_in
@@ -235,13 +235,14 @@ def try_lights(
     last: tuple[int, ...] = ()
     for number, (seen, unseen) in enumerate(folds):
         for done, model in enumerate(TRIED):
-            monitor.report(
-                say("choosing a model of mirrored light"), number * len(TRIED) + done, len(folds) * len(TRIED)
-            )
+            first, n_all = number * len(TRIED) + done, len(folds) * len(TRIED)
+            trial = PartOf(monitor, say("choosing a model of mirrored light"), first / n_all, (first + 1) / n_all)
+            trial.report("", 0.0, 1.0)
             if number == 0:
                 # In a program's first run kernels are compiled here, which takes longer than a trial.
-                _tried(model, seen, planes, replace(config, steps=1, time_limit_s=None), monitor, clock, device)
-            found[model] = _tried(model, seen, planes, config, monitor, clock, device)
+                one_step, still = replace(config, steps=1, time_limit_s=None), replace(trial, end=trial.start)
+                _tried(model, seen, planes, one_step, still, clock, device)
+            found[model] = _tried(model, seen, planes, config, trial, clock, device)
         scores += [[psnr_db(mean_square_error(found[model].panels, photo)) for model in TRIED] for photo in unseen]
         last = tuple(int(photo.photos[0]) for photo in unseen)
         if _are_clear(np.array(scores), len(folds)):

@@ -20,7 +20,7 @@ from planning.base.effects import Assessment, Decision, decide
 from planning.base.errors import InputError
 from planning.base.json_file import to_record
 from planning.base.messages import say
-from planning.base.progress import QUIET, Monitor
+from planning.base.progress import QUIET, Monitor, PartOf
 from reconstruction.base.cameras import PosedPhoto
 from reconstruction.light.choose_light import (
     LightTrials,
@@ -548,16 +548,6 @@ class SeparateLight:
         return Assessment(apart - alone - unsure, reason, cost_s)
 
 
-@dataclass(frozen=True, slots=True)
-class _NamedReports:
-    """Reports under the name of the choice."""
-
-    monitor: Monitor
-
-    def report(self, stage: str, done: float, total: float) -> None:
-        self.monitor.report(say("choosing a model of mirrored light"), done, total)
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class _Worth:
     """What came of it: the decision, the model of light that is best, PSNR of all, dB, and the best one's splats.
@@ -609,7 +599,6 @@ def _is_worth(
     unseen = [learned[number].name for number in tried.unseen]
     seen = tuple(photo for photo in learned if photo.name not in unseen)
     scored = unseen[:MOST_SCORED]
-    reports = Callbacks(_NamedReports(monitor))
     n_looks, tolerance_db = LOOKS * len(names), SeparateLight().tolerance
     with ExitStack() as closing:
         trials: dict[ModelName, _JointTrial] = {}
@@ -621,8 +610,10 @@ def _is_worth(
         scores: dict[ModelName, NDArray[np.float64]] = {}
         for look in range(1, LOOKS + 1):
             for name in (*going, ALONE_MODEL):
+                done = sum(trial.trainer.progress for other, trial in trials.items() if other != name) / len(trials)
+                part = PartOf(monitor, say("trying light together with splats"), done, done + 1.0 / len(trials))
                 with _turn(trials.values(), trials[name]):
-                    trials[name].trainer.run(reports, look / LOOKS)
+                    trials[name].trainer.run(Callbacks(part), look / LOOKS)
             with _turn(trials.values()):
                 scores |= {name: np.array(_of_views(trials[name])) for name in (*going, ALONE_MODEL)}
             best = max(going, key=lambda name: float(scores[name].mean()))

@@ -12907,6 +12907,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>transform_matrix: erwartet werden endliche Zahlen</translation>
     </message>
     <message>
+        <source>trying light together with splats</source>
+        <translation>Licht wird zusammen mit Splats erprobt</translation>
+    </message>
+    <message>
         <source>two facades at a right angle, whose glass sees glass</source>
         <translation>zwei Fassaden im rechten Winkel, deren Glas Glas sieht</translation>
     </message>

@@ -9,6 +9,7 @@ import torch
 
 from planning.base.effects import decide
 from planning.base.errors import InputError
+from planning.base.progress import QUIET
 from planning.geo.mesh import from_corners, write_mesh
 from reconstruction.dataset.records import coloured_ply
 from reconstruction.light import light_training
@@ -103,12 +104,24 @@ def of_other_light(folder, n):
         shutil.rmtree(one)
 
 
-def light_apart(folder, config, monkeypatch, others=(), show=unshown):
+class Stages:
+    """How far each stage came, one after the other."""
+
+    def __init__(self):
+        self.shares = []
+
+    def report(self, stage, done, total):
+        if not self.shares or self.shares[-1][0] != stage:
+            self.shares.append((stage, []))
+        self.shares[-1][1].append(done / total if total else 0.0)
+
+
+def light_apart(folder, config, monkeypatch, others=(), show=unshown, monitor=QUIET):
     """The decision, and the model of light; it is asked whatever rays alone say, of the environment map and others."""
     monkeypatch.setattr(start_module, "contenders", lambda *_: others)
     monkeypatch.setattr(start_module, "CLEAR_DB", np.inf)
     monkeypatch.setattr(start_module, "chosen", lambda trials: ("environment-map", chosen(trials)[1]))
-    start = start_model(read_photo_set(folder), config, show=show)
+    start = start_model(read_photo_set(folder), config, monitor, show=show)
     found = [decision for decision in start.decisions if decision.effect == "light apart from the splats"]
     return found, start.light_name
 
@@ -167,8 +180,12 @@ def test_of_several_lights_the_one_that_tells_most_together_with_splats_is_kept_
     monkeypatch.setattr(
         start_module, "warm_start_splats", lambda panels, splats, *_: found.append(splats.means.clone())
     )
-    (decision,), name = light_apart(tmp_path / "same", ASKED, monkeypatch, ("radiance-grid",))
+    stages = Stages()
+    (decision,), name = light_apart(tmp_path / "same", ASKED, monkeypatch, ("radiance-grid",), monitor=stages)
     assert decision.on
+    names = [stage for stage, _ in stages.shares]
+    assert len(set(names)) == len(names), "no stage comes back"
+    assert all(shares == sorted(shares) for _, shares in stages.shares), "no bar goes back"
     assert len(trainers) == 3
     # All began alike; what the best one learned goes on.
     best = trainers[("environment-map", "radiance-grid").index(name)]
