@@ -1,4 +1,4 @@
-"""The preset of an hour at its own hour, on the photos that the preset of ten minutes was measured with."""
+"""The preset of an hour at its own hour, on photos that are too large for ten minutes."""
 
 from __future__ import annotations
 
@@ -15,6 +15,10 @@ from tests.benchmarks.harness import Benchmark, Context, Row
 
 HOUR_S = 3600.0
 
+N_VIEWS, WIDTH_PX = 100, 1024
+
+WANTED_DB = 30.0
+
 LOOKS = 12
 """At held-out views on the way."""
 
@@ -22,9 +26,7 @@ LOOKS = 12
 def measure(context: Context) -> Iterator[Row]:
     """One training: some held-out views on the way, all of them in the end."""
     is_quick = context.is_quick
-    n_views, width = (
-        (presets.QUICK_N_VIEWS, presets.QUICK_WIDTH_PX) if is_quick else (presets.N_VIEWS, presets.WIDTH_PX)
-    )
+    n_views, width = (presets.QUICK_N_VIEWS, presets.QUICK_WIDTH_PX) if is_quick else (N_VIEWS, WIDTH_PX)
     config = preset("smoke") if is_quick else preset(presets.HIGHER)
     longest_s = presets.QUICK_BUDGET_S if is_quick else HOUR_S
     setting = Setting(
@@ -40,14 +42,15 @@ def measure(context: Context) -> Iterator[Row]:
         f"{found.n_splats} splats"
     )
     what = f"in the end ({found.seconds / 60.0:.0f} min), facades of unseen views"
-    yield Row("planar", what, round(found.facade_db, 2), "dB", None, beside)
+    target, is_met = f"at least {WANTED_DB:g} dB", found.facade_db >= WANTED_DB
+    yield Row("planar", what, round(found.facade_db, 2), "dB", None, beside, *(() if is_quick else (target, is_met)))
 
 
 BENCHMARK = Benchmark(
     "preset-hour",
     "The preset of an hour",
-    f"The preset `{presets.HIGHER}` in its own hour of processor time, one thread, on the photos of "
-    "[presets](#presets-and-settings-against-time). Its rates fall until the hour ends: on the way it has less than a "
-    "shorter one in the end.",
+    f"The preset `{presets.HIGHER}` in its own hour of processor time, one thread, on {N_VIEWS} rendered photos of the "
+    f"bundled planar scene {WIDTH_PX} pixels wide, near field, 15 % of the views held out. Its rates fall until the hour "
+    "ends: on the way it has less than a shorter one in the end.",
     measure,
 )
