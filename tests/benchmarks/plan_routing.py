@@ -12,7 +12,6 @@ from planning.aircraft.catalogue import profile
 from planning.base.progress import QUIET, Monitor, Stop, TimeLimit, Trace, never
 from planning.parameters import FlightRules
 from planning.planner import as_written
-from planning.routing import vrp
 from planning.routing.flights import flight_times
 from planning.routing.sorties import SortieProblem, Sorties, plan_sorties, solve_sorties, sortie_durations_s
 from planning.routing.vrp import _problem_data, _recorder, _run, _scale, _visits
@@ -42,7 +41,7 @@ def measure(context: Context) -> Iterator[Row]:
         yield Row("office", what, total / 60.0, "min", total / greedy_s, "nearest neighbour")
     start = solve_sorties(asked, max_rounds=0, stop=lambda: True)
     for is_warm in (True, False):
-        found = vrp.improve_sorties(asked, start, warm=is_warm, stop=TimeLimit(seconds))
+        found = improve_sorties(asked, start, warm=is_warm, stop=TimeLimit(seconds))
         total = _total_s(asked, found)
         what = f"PyVRP {'from a 3-opt tour' if is_warm else 'from its own'}, {seconds:g} s: {len(found)} sorties"
         yield Row("office", what, total / 60.0, "min", total / _total_s(asked, ours), "ours")

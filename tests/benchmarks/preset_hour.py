@@ -49,8 +49,8 @@ def measure(context: Context) -> Iterator[Row]:
 BENCHMARK = Benchmark(
     "preset-hour",
     "The preset of an hour",
-    f"The preset `{presets.HIGHER}` in its own hour of processor time, one thread, on {N_VIEWS} rendered photos of the "
-    f"bundled planar scene {WIDTH_PX} pixels wide, near field, 15 % of the views held out. Its rates fall until the hour "
-    "ends: on the way it has less than a shorter one in the end.",
+    f"The preset `{presets.HIGHER}` in its own hour of processor time, one thread, on {N_VIEWS} rendered photos of "
+    f"the bundled planar scene {WIDTH_PX} pixels wide, near field, 15 % of the views held out. Its rates fall until "
+    "the hour ends: on the way it has less than a shorter one in the end.",
     measure,
 )

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ast
+import importlib
 import math
 import re
 from pathlib import Path
-from types import SimpleNamespace
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
@@ -139,6 +141,19 @@ def test_names_are_unique_and_unknown_ones_are_refused(capsys: pytest.CaptureFix
     with pytest.raises(SystemExit):
         main(["--only", "nothing"])
     assert "kernel" in capsys.readouterr().err
+
+
+def test_what_benchmarks_call_of_modules_is_there() -> None:
+    """A benchmark that nobody ran for a while called a function that had moved."""
+    missing = []
+    for path in Path("tests/benchmarks").glob("*.py"):
+        module = importlib.import_module(f"tests.benchmarks.{path.stem}")
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+                named = getattr(module, node.value.id, None)
+                if isinstance(named, ModuleType) and not hasattr(named, node.attr):
+                    missing.append(f"{path.name}:{node.lineno}: {node.value.id}.{node.attr}")
+    assert missing == []
 
 
 @pytest.mark.benchmark
