@@ -11,12 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from planning.base.errors import InfeasibleError
-from planning.geo.frames import heading_difference_rad
+from planning.geo.frames import Vec3, heading_difference_rad
 from planning.parameters import FlightRules
 from planning.plan import Aircraft, Plan, Sortie, Viewpoint, viewpoint_arrays
 
@@ -408,9 +409,16 @@ def photo_vertices(sortie: Sortie, by_id: Mapping[str, Viewpoint]) -> NDArray[np
 
     Viewpoints at one place have a vertex each where the path has as many there, else they share one.
     """
-    path, found = sortie.path_enu_m, [-1]
-    for viewpoint_id in sortie.viewpoint_ids:
-        position, last = by_id[viewpoint_id].position_enu_m, found[-1]
+    positions = tuple(by_id[viewpoint_id].position_enu_m for viewpoint_id in sortie.viewpoint_ids)
+    found = _vertices_of(sortie.path_enu_m, positions)
+    return None if found is None else np.array(found, np.int64)
+
+
+@lru_cache(maxsize=64)  # check, times, lists and pictures of a plan all ask for those of the same sorties
+def _vertices_of(path: tuple[Vec3, ...], positions: tuple[Vec3, ...]) -> list[int] | None:
+    found = [-1]
+    for position in positions:
+        last = found[-1]
         vertex = last + 1
         while vertex < len(path) and math.dist(path[vertex], position) > SAME_PLACE_M:
             vertex += 1
@@ -420,7 +428,7 @@ def photo_vertices(sortie: Sortie, by_id: Mapping[str, Viewpoint]) -> NDArray[np
         if vertex == len(path):
             return None
         found.append(vertex)
-    return np.array(found[1:], np.int64)
+    return found[1:]
 
 
 def sortie_flight_path(

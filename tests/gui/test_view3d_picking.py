@@ -60,6 +60,24 @@ def test_the_ray_through_a_pixel_meets_what_the_slow_search_meets(make):
     assert n_panels >= 1
 
 
+@pytest.mark.parametrize("make", [court, canyon])
+def test_many_rays_at_once_meet_what_each_meets_by_itself(make):
+    scene = site_scene(make(), LIGHT)
+    index, rng = PickIndex(scene), np.random.default_rng(2)
+    eye = facing(scene.frames.normals[0], scene.extent(), 16 / 9, 30.0, 20.0).pinhole(*SIZE).eye_enu_m
+    rays = scene.frames.centroids[rng.integers(0, len(scene.frames), 200)] + rng.normal(0.0, 4.0, (200, 3)) - eye
+    rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+    depths_m, normals = index.bodies(eye, rays)
+    hidden = frozenset({Layer.NO_FLY, Layer.ZONES, Layer.HOME})
+    for ray, depth_m, normal in zip(rays, depths_m, normals, strict=True):
+        hit = index.surface(eye, ray, hidden)
+        assert np.isfinite(depth_m) == (hit is not None)
+        if hit is not None:
+            assert depth_m == pytest.approx(hit.depth_m, abs=1e-6)
+            assert normal == pytest.approx(hit.normal, abs=1e-9)
+    assert 20 < np.isfinite(depths_m).sum() < 200
+
+
 def test_every_panel_is_picked_at_the_pixel_of_its_centroid():
     model = office()
     scene = site_scene(model, LIGHT)

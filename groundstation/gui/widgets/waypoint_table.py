@@ -99,7 +99,7 @@ class WaypointModel(QAbstractTableModel):
             self.endResetModel()
         else:
             self._rows = after
-            changed = [number for number, row in enumerate(after) if row != before[number]]
+            changed = [n for n, row in enumerate(after) if row is not before[n] and row != before[n]]
             self._rows_changed(changed, Column.SORTIE, Column.LOCKED)
         if panels_covered is not None:
             self.set_panels_covered(panels_covered)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +17,8 @@ from planning.checks.rules import MAX_ALTITUDE_M
 from planning.geo.frames import Origin, Vec3
 from planning.insight.flight_profile import FlightProfile, sortie_profile
 from planning.motion.timing import motion_limits, photo_vertices, sortie_flight_path, stopping_times_s
-from planning.plan import Plan, Sortie, Viewpoint
+from planning.parameters import FlightRules
+from planning.plan import Aircraft, Plan, Sortie, Viewpoint
 from planning.site.ground import Ground, ground_of
 from planning.site.records import SiteModel
 
@@ -205,13 +207,26 @@ def waypoint_rows(plan: Plan, origin: Origin | None = None) -> tuple[WaypointRow
 
     `origin` is that of the site, for plans that do not say where they lie.
     """
-    by_id = {viewpoint.id: viewpoint for viewpoint in plan.viewpoints}
-    stops: list[_Stop] = []
+    by_id, origin = {viewpoint.id: viewpoint for viewpoint in plan.viewpoints}, plan.origin or origin
+    rows: list[WaypointRow] = []
     for number, sortie in enumerate(plan.sorties, 1):
-        stops += _sortie_stops(number, sortie, by_id, plan)
+        views = tuple(by_id[viewpoint_id] for viewpoint_id in sortie.viewpoint_ids)
+        rows += _sortie_rows(number, sortie, views, plan.aircraft, plan.rules, origin)
     flown = {viewpoint_id for sortie in plan.sorties for viewpoint_id in sortie.viewpoint_ids}
-    stops += [_Stop(0, None, view, view.position_enu_m) for view in plan.viewpoints if view.id not in flown]
-    return _placed(stops, plan.origin or origin)
+    idle = [_Stop(0, None, view, view.position_enu_m) for view in plan.viewpoints if view.id not in flown]
+    return (*rows, *_placed(idle, origin))
+
+
+@lru_cache(maxsize=32)  # an edit changes one sortie of many
+def _sortie_rows(
+    number: int,
+    sortie: Sortie,
+    views: tuple[Viewpoint, ...],
+    aircraft: Aircraft,
+    rules: FlightRules,
+    origin: Origin | None,
+) -> tuple[WaypointRow, ...]:
+    return _placed(list(_sortie_stops(number, sortie, views, aircraft, rules)), origin)
 
 
 class _Stop(NamedTuple):
@@ -225,8 +240,10 @@ class _Stop(NamedTuple):
     arrival_s: float | None = None
 
 
-def _sortie_stops(number: int, sortie: Sortie, by_id: dict[str, Viewpoint], plan: Plan) -> Iterator[_Stop]:
-    views = [by_id[viewpoint_id] for viewpoint_id in sortie.viewpoint_ids]
+def _sortie_stops(
+    number: int, sortie: Sortie, views: tuple[Viewpoint, ...], aircraft: Aircraft, rules: FlightRules
+) -> Iterator[_Stop]:
+    by_id = {view.id: view for view in views}
     path, vertices = sortie.path_enu_m, photo_vertices(sortie, by_id)
     if vertices is None or len(path) < 2:
         # The path misses photos: they are listed all the same, for the findings name them.
@@ -235,18 +252,18 @@ def _sortie_stops(number: int, sortie: Sortie, by_id: dict[str, Viewpoint], plan
     at: list[list[Viewpoint]] = [[] for _ in path]
     for view, vertex in zip(views, vertices, strict=True):
         at[vertex].append(view)
-    arrivals = iter(_arrivals_s(sortie, by_id, plan))
+    arrivals = iter(_arrivals_s(sortie, by_id, aircraft, rules))
     for vertex, (point, photos) in enumerate(zip(path, at, strict=True)):
         leg_m = math.dist(path[vertex - 1], point) if vertex else 0.0
         for nth, photo in enumerate(photos or [None]):
             yield _Stop(number, vertex, photo, point, 0.0 if nth else leg_m, next(arrivals, None))
 
 
-def _arrivals_s(sortie: Sortie, by_id: dict[str, Viewpoint], plan: Plan) -> Sequence[float]:
+def _arrivals_s(sortie: Sortie, by_id: dict[str, Viewpoint], aircraft: Aircraft, rules: FlightRules) -> Sequence[float]:
     """Arrival at each vertex, photos that share one following each other; empty in wind that cannot be flown in."""
     try:
-        flown = sortie_flight_path(sortie, by_id, plan.aircraft, plan.rules)
-        limits = motion_limits(plan.aircraft, plan.rules)
+        flown = sortie_flight_path(sortie, by_id, aircraft, rules)
+        limits = motion_limits(aircraft, rules)
     except InfeasibleError:
         return ()
     return () if flown is None else [float(t) for t in stopping_times_s(flown[0], limits)]
@@ -254,6 +271,8 @@ def _arrivals_s(sortie: Sortie, by_id: dict[str, Viewpoint], plan: Plan) -> Sequ
 
 def _placed(stops: Sequence[_Stop], origin: Origin | None) -> tuple[WaypointRow, ...]:
     """Rows: stops with their places on the globe and their heights."""
+    if not stops:
+        return ()
     points = np.array([stop.position_enu_m for stop in stops], np.float64).reshape(-1, 3)
     takeoff_row = {stop.sortie: index for index, stop in enumerate(stops) if stop.vertex == 0}
     if origin is None:

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from groundstation.services.mission import waypoints
 from groundstation.services.mission.waypoints import HeightShown, waypoint_rows
 from missions.mission.build import missions_from_plan
 from missions.mission.model import altitude_amsl_m
@@ -85,3 +86,16 @@ def test_wind_that_cannot_be_flown_in_leaves_arrivals_open():
     plan = example_plan()
     stormy = replace(plan, rules=replace(plan.rules, wind_m_s=50.0))
     assert {row.arrival_s for row in waypoint_rows(stormy)} == {None}
+
+
+def test_after_an_edit_rows_of_other_sorties_are_those_that_were_there():
+    plan = example_plan()
+    assert len(plan.sorties) > 1
+    before, edited = waypoint_rows(plan), plan.sorties[-1].viewpoint_ids[0]
+    views = tuple(replace(view, heading_deg=17.0) if view.id == edited else view for view in plan.viewpoints)
+    after = waypoint_rows(replace(plan, viewpoints=views))
+    own = [number for number, row in enumerate(after) if row.viewpoint and row.viewpoint.id == edited]
+    assert [after[number].viewpoint.heading_deg for number in own] == [17.0]
+    assert all((new is old) == (new.sortie != len(plan.sorties)) for old, new in zip(before, after, strict=True))
+    waypoints._sortie_rows.cache_clear()
+    assert waypoint_rows(replace(plan, viewpoints=views)) == after
