@@ -600,3 +600,9 @@ class PlanParameters:
         others = (self.n_views, self.n_batteries, self.least_gain_db)
         has_goal = any(value is not None for value in others)
         return None if has_goal or self.method != "greedy" else DEFAULT_SHARE
+
+    @property
+    def is_for_least_error(self) -> bool:
+        """Whether views are chosen for the least expected error of the model: not where they are to cover a share."""
+        is_for_share = self.wanted_share is not None
+        return self.method == "greedy" and self.greedy.objective == "image-error" and not is_for_share

@@ -321,7 +321,7 @@ def plan_flight(
     if request.least_gain_db is not None:
         n_batteries = _batteries_worth(problem, judged()[0], request, chosen_profile, choosing, monitor)
         request = replace(request, n_batteries=n_batteries, least_gain_db=None)
-    chosen_for = judged()[0] if _are_chosen_for_error(request) and judged()[0].n_elements else None
+    chosen_for = judged()[0] if request.is_for_least_error and judged()[0].n_elements else None
     found = _choose(problem, request, chosen_profile, chosen_for, choosing, trace, monitor)
     n_locked = len(request.locked)
     views = as_written(problem, found.views, n_locked)
@@ -384,12 +384,6 @@ def _time_of_routing(request: PlanRequest) -> tuple[float, float]:
     has_routes = request.n_batteries is not None or request.least_gain_db is not None
     share, shortest_s = (REROUTING_SHARE, DRAWING_S) if has_routes else (ROUTING_SHARE, SHORTEST_ROUTING_S)
     return share, float(np.clip(share * request.time_budget_s, shortest_s, LONGEST_ROUTING_S))
-
-
-def _are_chosen_for_error(request: PlanRequest) -> bool:
-    """Whether views are chosen for the least expected error: not where they are to cover a share of the sections."""
-    has_number = request.n_views is not None or request.n_batteries is not None
-    return request.method == "greedy" and request.greedy.objective == "image-error" and has_number
 
 
 def _that_can_be_routed(

@@ -216,6 +216,7 @@ class QualityChart(QWidget):
         super().__init__(parent)
         self._clock = clock
         self._points: list[QualityPoint] = []
+        self._is_for_model = False
         self._bound: float | None = None
         self._started_s: float | None = None
         self._budget_s = 0.0
@@ -262,9 +263,11 @@ class QualityChart(QWidget):
         self._redraw.stop()
         self._draw()
 
-    def show_history(self, points: tuple[QualityPoint, ...], bound: float | None) -> None:
-        """The curve of a plan that was made before."""
-        self._points, self._bound = list(points), bound
+    def show_history(
+        self, points: tuple[QualityPoint, ...], bound: float | None, *, is_for_model: bool = False
+    ) -> None:
+        """The curve of a plan that was made before; its views may have been chosen for the model and not for this."""
+        self._points, self._bound, self._is_for_model = list(points), bound, is_for_model
         self._draw()
 
     def text(self) -> str:
@@ -289,7 +292,10 @@ class QualityChart(QWidget):
         elif elapsed_s is None and self._bound:
             # The plan may have been edited since.
             words = self.tr("The search found {0:.0f} sections, {1:.1f} % of the {2:.0f} that any flight could cover")
-            self._words.setText(words.format(values[-1], per_cent(values[-1], self._bound), self._bound))
+            text = words.format(values[-1], per_cent(values[-1], self._bound), self._bound)
+            if self._is_for_model:
+                text += "\n" + self.tr("Its views were chosen for the quality of the model instead: see “Worth”.")
+            self._words.setText(text)
         elif self._bound:
             self._words.setText(
                 self.tr("{0:.0f} sections covered, {1:.1f} % of the {2:.0f} that any flight could cover").format(

@@ -131,6 +131,8 @@ class PlanController(QObject):
 
     Signals
     -------
+    planned(PlanEntry)
+        A plan has come into the document.
     planningStarted(Job, float), planningEnded()
         With the time budget in seconds.
     activePlanChanged(ActivePlan or None)
@@ -141,6 +143,7 @@ class PlanController(QObject):
 
     planningStarted = Signal(object, float)  # noqa: N815  (Qt's own way of naming)
     planningEnded = Signal()  # noqa: N815
+    planned = Signal(object)
     activePlanChanged = Signal(object)  # noqa: N815
     refused = Signal(object)
 
@@ -369,6 +372,7 @@ class PlanController(QObject):
         title = self.tr("{0}, {1} views").format(method_name(plan.method), len(plan.viewpoints))
         entry = PlanEntry(document.free_plan_id(), title, plan, request, planned.bound_for_views)
         self._context.change(self.tr("Plan"), document.with_plan(entry))
+        self.planned.emit(entry)
         coverage = plan.coverage
         self._context.say(
             Severity.OK,

@@ -40,7 +40,7 @@ from groundstation.services.mission.camera import CameraReport, report_of_findin
 from groundstation.services.mission.readiness import additional_findings
 from groundstation.services.plan.places import item_of_place
 from groundstation.services.plan.plan_cache import ActivePlan
-from groundstation.services.project.document import Document, Item, ItemKind
+from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.project.steps import Act
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, per_cent, sampling_unit
 from planning.base.effects import EffectSetting
@@ -50,7 +50,7 @@ from planning.base.progress import QualityPoint
 from planning.insight.sections import PlanInsight, SectionState
 from planning.optics import CameraControls
 from planning.parameters import CameraSettings
-from planning.plan import FlightWorth, Plan
+from planning.plan import FlightWorth
 from planning.request import PlanRequest
 
 FIRST_FOCUS_M = 20.0
@@ -360,6 +360,12 @@ def vertex_clearances_m(legs_m: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.array([min(pair) for pair in itertools.pairwise(padded)])
 
 
+def _is_for_model(entry: PlanEntry) -> bool:
+    """Whether the views of a plan were chosen for the quality of the model, and it is known what they are worth."""
+    asked = entry.request is not None and entry.request.is_for_least_error
+    return asked and entry.plan.present_worth is not None
+
+
 class PlanPage(GradualTab):
     """The tab."""
 
@@ -469,6 +475,7 @@ class PlanPage(GradualTab):
         self.paint.valueChanged.connect(lambda *_: self._paint())
         controller.planningStarted.connect(self._planning_started)
         controller.planningEnded.connect(self._planning_ended)
+        controller.planned.connect(self._planned)
         controller.activePlanChanged.connect(self._show_active)
         self.effects.lookedAt.connect(self.effects_controller.look)
         self.effects_controller.effectsChanged.connect(self.effects.set_effects)
@@ -534,7 +541,7 @@ class PlanPage(GradualTab):
             self._say_verdict(words, "muted")
             self._result.clear()
         if not self.controller.is_planning:
-            self._show_history(None if entry is None else entry.plan)
+            self._show_history(entry)
 
     def _show_camera(self, document: Document) -> None:
         plan, request = None if document.current is None else document.current.plan, document.request
@@ -549,12 +556,13 @@ class PlanPage(GradualTab):
         if item is not None:
             self._context.jump_to(item)
 
-    def _show_history(self, plan: Plan | None) -> None:
-        if plan is None:
+    def _show_history(self, entry: PlanEntry | None) -> None:
+        if entry is None:
             self.chart.show_history((), None)
             return
-        points = tuple(QualityPoint(point.t_s, float(point.covered)) for point in plan.history)
-        self.chart.show_history(points, float(plan.coverage.reachable_upper_bound))
+        points = tuple(QualityPoint(point.t_s, float(point.covered)) for point in entry.plan.history)
+        bound = float(entry.plan.coverage.reachable_upper_bound)
+        self.chart.show_history(points, bound, is_for_model=_is_for_model(entry))
 
     def _show_active(self, active: ActivePlan | None) -> None:
         self.panel.set_plan(None if active is None else active.insight, None if active is None else active.plan)
@@ -589,8 +597,11 @@ class PlanPage(GradualTab):
             )
         coverage, units = plan.coverage, self._context.units
         finest = active.insight.sampling.best_m
-        lines = [
-            self.tr("Views: {0}, sorties: {1}").format(len(plan.viewpoints), len(plan.sorties)),
+        lines = [self.tr("Views: {0}, sorties: {1}").format(len(plan.viewpoints), len(plan.sorties))]
+        worth = plan.present_worth
+        if worth is not None:
+            lines.append(self.tr("Unseen views of its model: {0}").format(self._context.localized(worth.text)))
+        lines += [
             self.tr("{0} of {1} sections covered ({2:.1f} % of the {3} that any flight could cover)").format(
                 coverage.covered,
                 coverage.total,
@@ -612,9 +623,6 @@ class PlanPage(GradualTab):
         known = finest[finest == finest]
         if len(known):
             lines.append(self.tr("GSD from {0}").format(sampling_unit(units).text(float(known.min()))))
-        worth = plan.present_worth
-        if worth is not None:
-            lines.append(self.tr("Unseen views of its model: {0}").format(self._context.localized(worth.text)))
         self._result.setText("\n".join(lines))
 
     def _worth_lines(self, worth: FlightWorth | None) -> tuple[Line, ...]:
@@ -702,6 +710,10 @@ class PlanPage(GradualTab):
         self.chart.finish()
         self._enough_action.setEnabled(False)
         self._show_document(self._context.document)
+
+    def _planned(self, entry: PlanEntry) -> None:
+        if _is_for_model(entry):
+            self._detail.setCurrentWidget(self.worth)
 
     def _improved(self, event: JobImproved) -> None:
         if event.job_id == self._planning_id:

@@ -6222,6 +6222,10 @@ Blickrichtung: {3}</translation>
         <translation>Die Suche fand {0:.0f} Sektoren, {1:.1f} % der {2:.0f} überhaupt erreichbaren</translation>
     </message>
     <message>
+        <source>Its views were chosen for the quality of the model instead: see “Worth”.</source>
+        <translation>Die Aufnahmen wurden stattdessen für die Qualität des Modells gewählt: siehe „Wert“.</translation>
+    </message>
+    <message>
         <source>{0:.0f} sections covered, {1:.1f} % of the {2:.0f} that any flight could cover</source>
         <translation>{0:.0f} Sektoren abgedeckt, {1:.1f} % der {2:.0f} überhaupt erreichbaren</translation>
     </message>

@@ -98,6 +98,16 @@ def test_what_a_plan_is_worth_stands_beside_it_until_its_sorties_change(applicat
 
 
 @pytest.mark.slow
+def test_a_plan_for_the_model_ends_on_its_worth_and_one_for_sections_on_their_curve(application, controller):
+    opened(application, controller, "roof")
+    for goal, shown in (({"n_views": 8}, "worth"), ({"share": 0.5}, "chart")):
+        asked = replace(QUICK, n_views=None, share=None)
+        page = planned(application, controller, replace(asked, **goal))
+        assert page.right.currentWidget() is getattr(page, shown)
+        assert ("see “Worth”" in page.chart.text()) == (shown == "worth")
+
+
+@pytest.mark.slow
 def test_a_panel_of_the_site_before_is_not_taken_for_one_of_the_next(application, controller, page):
     controller.context.select(Item(ItemKind.PANEL, controller.context.document.site.site.panels[3].id))
     opened(application, controller, "office")
