@@ -6,7 +6,7 @@ Figures, attitude and heading that lie over the view are painted on opaque plate
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from PySide6.QtCore import QModelIndex, QPointF, QRectF, QSize, Qt, Signal
@@ -230,6 +230,30 @@ TAPE_PX = 40
 LETTERS = {0: "N", 45: "NE", 90: "E", 135: "SE", 180: "S", 225: "SW", 270: "W", 315: "NW"}
 
 
+def tape_font(font: QFont) -> QFont:
+    """That of the words of a heading tape."""
+    small = QFont(font)
+    small.setPixelSize(13)
+    small.setBold(True)
+    return small
+
+
+def tape_marks(
+    heading_deg: float, room: QRectF, box: QRectF, metrics: QFontMetricsF
+) -> Iterator[tuple[float, str, bool]]:
+    """Marks of a heading tape, every 15 degrees: where, what is written there, and whether there is room for it.
+
+    There is none where the words would be cut by the end of the tape, or by the box with the heading itself.
+    """
+    first = 15 * math.ceil((heading_deg - TAPE_DEG / 2.0) / 15.0)
+    for mark in range(first, round(heading_deg + TAPE_DEG / 2.0) + 1, 15):
+        x = room.center().x() + (mark - heading_deg) * room.width() / TAPE_DEG
+        text = LETTERS.get(mark % 360, f"{mark % 360:03d}")
+        left, right = x - 0.5 * metrics.horizontalAdvance(text), x + 0.5 * metrics.horizontalAdvance(text)
+        is_inside = left >= room.left() + 2.0 and right <= room.right() - 2.0
+        yield x, text, is_inside and (right < box.left() or left > box.right())
+
+
 class AttitudeView(QWidget):
     """A heading tape above an artificial horizon: nose and wings of the aircraft, and where the camera points."""
 
@@ -276,27 +300,23 @@ class AttitudeView(QWidget):
         painter.save()
         painter.setClipRect(room)
         painter.fillRect(room, QColor(look.base))
-        font = QFont(self.font())
-        font.setPixelSize(13)
-        font.setBold(True)
+        font = tape_font(self.font())
         painter.setFont(font)
         if found is not None:
             heading = math.degrees(found.heading_rad) % 360.0
             px_per_deg, middle = room.width() / TAPE_DEG, room.center().x()
-            first = 15 * math.ceil((heading - TAPE_DEG / 2.0) / 15.0)
-            for mark in range(first - 15, round(heading + TAPE_DEG / 2.0) + 16, 15):
-                x = middle + (mark - heading) * px_per_deg
-                painter.setPen(QPen(QColor(look.text), 1.5))
+            box = QRectF(middle - 24.0, room.top(), 48.0, 26.0)
+            painter.setPen(QPen(QColor(look.text), 1.5))
+            for x, text, is_whole in tape_marks(heading, room, box, QFontMetricsF(font)):
                 painter.drawLine(QPointF(x, room.top()), QPointF(x, room.top() + 6.0))
-                text = LETTERS.get(mark % 360, f"{mark % 360:03d}")
-                painter.drawText(QRectF(x - 20, room.top() + 6, 40, 16), Qt.AlignmentFlag.AlignCenter, text)
+                if is_whole:
+                    painter.drawText(QRectF(x - 20, room.top() + 6, 40, 16), Qt.AlignmentFlag.AlignCenter, text)
             if self._camera is not None:
                 off = (math.degrees(self._camera.heading_rad) - heading + 180.0) % 360.0 - 180.0
                 x = min(max(middle + off * px_per_deg, room.left() + 6.0), room.right() - 6.0)
                 painter.setPen(Qt.PenStyle.NoPen)
                 painter.setBrush(QColor(look.accent))
                 painter.drawPolygon(QPolygonF([QPointF(x, 30), QPointF(x - 6, 39), QPointF(x + 6, 39)]))
-            box = QRectF(middle - 24.0, room.top(), 48.0, 26.0)
             painter.setPen(QPen(QColor(look.text), 2.0))
             painter.setBrush(QColor(look.base))
             painter.drawRect(box)

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from PySide6.QtGui import QColor, QImage, QPainter
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QColor, QFontMetricsF, QImage, QPainter
 
 from groundstation.gui.fly.aircraft_shape import aircraft_drawables, body_axes, paint_aircraft
 from groundstation.gui.fly.flight_overlay import WarningBanner
-from groundstation.gui.fly.readouts_view import AttitudeView, FlightFigures
+from groundstation.gui.fly.readouts_view import LETTERS, TAPE_DEG, AttitudeView, FlightFigures, tape_font, tape_marks
 from groundstation.gui.widgets.theme import LIGHT
 from groundstation.services.fly.announce import aged_warnings, ordered_warnings
 from groundstation.services.fly.events import LinkState, LiveView, Readouts, ViewState
@@ -153,6 +154,24 @@ def test_warnings_stand_until_they_are_over_the_worst_and_newest_first(applicati
     assert 4 * banner.fontMetrics().height() < wide < narrow, "all lines have room"
     banner.set_warnings(aged_warnings(view_of()))
     assert banner.is_empty()
+
+
+def test_words_of_the_heading_tape_are_whole_and_there_are_some_on_both_sides(application):
+    room, box, metrics = (
+        QRectF(0.0, 0.0, 208.0, 40.0),
+        QRectF(80.0, 0.0, 48.0, 26.0),
+        QFontMetricsF(tape_font(application.font())),
+    )
+    for heading in range(360):
+        shown = [(x, text) for x, text, is_whole in tape_marks(float(heading), room, box, metrics) if is_whole]
+        wide = [metrics.horizontalAdvance(text) for _, text in shown]
+        rooms = [QRectF(x - 0.5 * width, 6.0, width, 16.0) for (x, _), width in zip(shown, wide, strict=True)]
+        assert all(room.contains(words) and not box.intersects(words) for words in rooms), heading
+        assert min(x for x, _ in shown) < box.left() < box.right() < max(x for x, _ in shown), heading
+        for x, text in shown:
+            mark = next((mark for mark, letters in LETTERS.items() if letters == text), None)
+            off_deg = ((int(text) if mark is None else mark) - heading + 180.0) % 360.0 - 180.0
+            assert x == pytest.approx(104.0 + off_deg * 208.0 / TAPE_DEG)
 
 
 def test_attitude_is_shown_and_said(application):
