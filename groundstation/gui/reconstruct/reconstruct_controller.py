@@ -227,7 +227,9 @@ class ActiveTraining:
     dataset, out
         Folders of what is learned from, and of the model.
     begun_s
-        When it began, of `time.monotonic`.
+        When it began, of `time.monotonic`; as much later as it waited since.
+    longest_s
+        That it may take; None where that is not known, or part of it was spent before.
     n_first_looks
         Models that there were to look at before the first step.
     quality
@@ -239,6 +241,8 @@ class ActiveTraining:
     dataset: Path = field(default_factory=Path)
     out: Path = field(default_factory=Path)
     begun_s: float = 0.0
+    longest_s: float | None = None
+    waits_since_s: float | None = None
     stage: Stage | None = None
     n_first_looks: int = 0
     stepped: Stepped | None = None
@@ -252,6 +256,19 @@ class ActiveTraining:
         if self.ended is None and self.n_first_looks > 0:
             return True
         return self.stepped is not None or (self.ended is not None and self.ended.outcome == "done")
+
+    @property
+    def elapsed_s(self) -> float:
+        """What it has taken, but for the time that it waited."""
+        now_s = time.monotonic() if self.waits_since_s is None else self.waits_since_s
+        return now_s - self.begun_s
+
+    def wait(self, *, is_on: bool) -> None:
+        """It waits from now on, or goes on."""
+        now_s = time.monotonic()
+        if self.waits_since_s is not None:
+            self.begun_s += now_s - self.waits_since_s
+        self.waits_since_s = now_s if is_on else None
 
     def take_step(self, stepped: Stepped) -> None:
         """It has gone on."""
@@ -353,7 +370,9 @@ class ReconstructController(FolderController):
             return
         resume = self.standing.is_interrupted
         request = self.choice.request(known.limit_bytes if known.is_reduced else None)
-        self.training, self.is_paused = ActiveTraining(card.folder, self.out, time.monotonic()), False
+        longest_s = None if resume else self.choice.longest_s
+        self.training = ActiveTraining(card.folder, self.out, time.monotonic(), longest_s)
+        self.is_paused = False
         if not resume:
             self.light, self.decisions = "", ()
         self._to(Phase.PREPARING)
@@ -374,8 +393,9 @@ class ReconstructController(FolderController):
 
     def pause(self, is_on: bool) -> None:
         """Let the training wait, or go on."""
-        if self.phase in (Phase.PREPARING, Phase.TRAINING):
+        if self.phase in (Phase.PREPARING, Phase.TRAINING) and is_on != self.is_paused:
             self.is_paused = is_on
+            self.training.wait(is_on=is_on)
             self._process.send(Pause(is_on))
             self.stateChanged.emit()
 
@@ -383,6 +403,7 @@ class ReconstructController(FolderController):
         """Good enough: settle, and write the model."""
         if self.phase in (Phase.PREPARING, Phase.TRAINING):
             self.is_paused = False
+            self.training.wait(is_on=False)
             self._process.send(Stop())
             self._to(Phase.COOLING_DOWN)
 
@@ -483,12 +504,18 @@ class ReconstructController(FolderController):
         if not self.is_busy:
             self._context.ongoingChanged.emit(None)
         elif stepped is not None:
-            text = self.tr("Training: {0} steps").format(stepped.step)
-            self._context.ongoingChanged.emit(Ongoing(text, stepped.progress, stepped.seconds, stepped.left_s))
+            text, left_s = self.tr("Training: {0} steps").format(stepped.step), stepped.left_s
+            share: float | None = stepped.progress
+            if left_s is not None:
+                share = stepped.seconds / max(1e-9, stepped.seconds + left_s)
+            self._context.ongoingChanged.emit(Ongoing(text, share, stepped.seconds, left_s))
         elif stage is not None:
-            share = stage.done / stage.total if stage.total > 0 else None
             text = self.tr("Training: {0}").format(self._context.localized(stage.stage))
-            self._context.ongoingChanged.emit(Ongoing(text, share, time.monotonic() - self.training.begun_s, None))
+            elapsed_s, longest_s = self.training.elapsed_s, self.training.longest_s
+            share, left_s = stage.done / stage.total if stage.total > 0 else None, None
+            if longest_s is not None:  # one bar for all stages: each has its own on the page
+                share, left_s = min(1.0, elapsed_s / longest_s), max(0.0, longest_s - elapsed_s)
+            self._context.ongoingChanged.emit(Ongoing(text, share, elapsed_s, left_s))
 
     def _tell_data_set(self) -> None:
         if self.card is not None:

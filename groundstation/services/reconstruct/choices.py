@@ -82,6 +82,12 @@ class TrainChoice:
     light: str = "auto"
     on_cuda: bool = False
 
+    @property
+    def longest_s(self) -> float | None:
+        """How long it may take; None where its preset has no limit."""
+        minutes = preset_rows().get(self.preset) if self.minutes is None else self.minutes
+        return None if minutes is None else 60.0 * minutes
+
     def request(self, memory_bytes: int | None = None) -> TrainRequest:
         """What is asked of the training."""
         knows_panels = method_named(self.method).knows_panels

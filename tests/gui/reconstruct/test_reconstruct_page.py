@@ -115,12 +115,23 @@ def test_a_training_goes_from_preparing_to_its_end_and_buttons_follow(chosen, tm
     chosen.controller.training.begun_s -= 65.0
     take(chosen, Stage("learning reflections", 4, 80))
     assert 65.0 <= ongoing[-1].elapsed_s < 95.0
+    longest_s = chosen.controller.choice.longest_s
+    assert ongoing[-1].elapsed_s + ongoing[-1].remaining_s == pytest.approx(longest_s)
+    assert ongoing[-1].share == pytest.approx(ongoing[-1].elapsed_s / longest_s), "one bar for all stages"
+    chosen.side.pause.click()
+    waiting_s = chosen.controller.training.elapsed_s
+    chosen.controller.training.waits_since_s -= 40.0
+    chosen.side.pause.click()
+    assert chosen.controller.training.elapsed_s == pytest.approx(waiting_s - 40.0, abs=5.0), (
+        "while it waits no time goes"
+    )
     assert "The model is shown here once it learns" in chosen.pane.view.note()
     take(chosen, STEP)
     assert chosen.told.of(ViewRequest)[-1].subject == TRAINING
     take(chosen, STEP, Measured(30.0, 21.5))
     assert "12 steps, 970 splats; 21.50 dB" in chosen.progress.text()
     assert ongoing[-1].remaining_s == STEP.left_s
+    assert ongoing[-1].share == pytest.approx(STEP.seconds / (STEP.seconds + STEP.left_s))
     chosen.side.pause.click()
     assert chosen.told.of(Pause)[-1].is_on
     assert chosen.side.pause.text() == "Resume"
