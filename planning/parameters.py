@@ -604,5 +604,4 @@ class PlanParameters:
     @property
     def is_for_least_error(self) -> bool:
         """Whether views are chosen for the least expected error of the model: not where they are to cover a share."""
-        is_for_share = self.wanted_share is not None
-        return self.method == "greedy" and self.greedy.objective == "image-error" and not is_for_share
+        return self.method == "greedy" and self.greedy.objective == "image-error" and self.wanted_share is None

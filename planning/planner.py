@@ -307,14 +307,13 @@ def plan_flight(
     limit = TimeLimit(request.time_budget_s - spent_s - _ending_share(site_model, request) * spent_s)
     watch = _Timer()
     prepared = first_reusable(() if prepared is None else (prepared,), site_model, request)
-    routing_share, routing_s = _time_of_routing(request)
-    finishing_s = FINISHING_SHARE * request.time_budget_s
     if prepared is None:
         proving = any_of(stop, TimeLimit(REACHABILITY_SHARE * limit.remaining_s()))
         prepared = _prepared(site_model, request, chosen_profile, proving, monitor)
     watch.lap("reachability")
     trace.record_bound(prepared.problem.reachability.upper_bound)
-    choosing_s = limit.remaining_s() - routing_s - finishing_s
+    routing_share, routing_s = _time_of_routing(request)
+    choosing_s = limit.remaining_s() - routing_s - FINISHING_SHARE * request.time_budget_s
     choosing = TimeLimit(choosing_s if choosing_s > LEAST_CHOOSING_S else 0.0, also=stop)
     problem = prepared.problem
     judged = cache(partial(image_error_model, problem, site_model, request.greedy.surroundings, request.seed, photos))

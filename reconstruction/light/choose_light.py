@@ -237,7 +237,6 @@ def try_lights(
         for done, model in enumerate(TRIED):
             first, n_all = number * len(TRIED) + done, len(folds) * len(TRIED)
             trial = PartOf(monitor, say("choosing a model of mirrored light"), first / n_all, (first + 1) / n_all)
-            trial.report(trial.stage, 0.0, 1.0)
             if number == 0:
                 # In a program's first run kernels are compiled here, which takes longer than a trial.
                 one_step, still = replace(config, steps=1, time_limit_s=None), replace(trial, end=trial.start)

@@ -230,6 +230,8 @@ class ActiveTraining:
         When it began, of `time.monotonic`; as much later as it waited since.
     longest_s
         That it may take; None where that is not known, or part of it was spent before.
+    waits_since_s
+        Of `time.monotonic`; None where it does not wait.
     n_first_looks
         Models that there were to look at before the first step.
     quality

@@ -12,7 +12,7 @@ from groundstation.gui.view3d.drawables import Layer, shown_panels
 from groundstation.gui.view3d.orbit import Pinhole
 from groundstation.gui.view3d.site_scene import PlanScene, SiteScene, landing_pad
 from groundstation.services.project.document import Item, ItemKind
-from planning.geo.bvh import Bvh, build_bvh, first_hits, segment_hits, segment_hits_triangle
+from planning.geo.bvh import build_bvh, first_hits, segment_hits, segment_hits_triangle
 from planning.site.ground import drawn_terrain
 from planning.site.records import panel_triangles
 
@@ -84,10 +84,11 @@ class PickIndex:
         self._panels = tuple(Item(ItemKind.PANEL, panel.id) for panel in site.panels)
         self._items = [item for item, _ in parts]
         self._starts = np.cumsum([0, *(len(corners) for _, corners in parts)])
-        self._bvh: Bvh = build_bvh(np.concatenate([corners for _, corners in parts]))
         n_bodies = 2 + len(model.obstacles)  # behind the panels and the building
-        self._body_corners = np.concatenate([corners for _, corners in parts[:n_bodies]])
-        self._bodies: Bvh = build_bvh(self._body_corners)
+        self._bodies, self._others = (
+            build_bvh(np.concatenate([corners for _, corners in some])) for some in (parts[:n_bodies], parts[n_bodies:])
+        )
+        self._leaf_of_body = np.argsort(self._bodies.source)
         self._widths_m2 = {zone.item: zone.width_m2 for zone in scene.zones}
         self._ground_z_m = site.airspace.ground_z_m
         self._terrain = drawn_terrain(site)
@@ -100,13 +101,14 @@ class PickIndex:
         """
         found = np.empty(MAX_HITS, np.int64)
         end = eye_enu_m + REACH_M * direction
-        n = min(segment_hits(self._bvh, eye_enu_m, end, found), MAX_HITS)
         hits = []
-        for k in found[:n]:
-            depth = REACH_M * segment_hits_triangle(eye_enu_m, end, self._bvh.corners[k])
-            item = self._item(int(self._bvh.source[k]))
-            if _LAYERS[item.kind] not in hidden:
-                hits.append((depth, int(k), item))
+        for bvh, first_triangle in ((self._bodies, 0), (self._others, len(self._bodies.source))):
+            n = min(segment_hits(bvh, eye_enu_m, end, found), MAX_HITS)
+            for k in found[:n]:
+                item = self._item(first_triangle + int(bvh.source[k]))
+                if _LAYERS[item.kind] not in hidden:
+                    depth = REACH_M * segment_hits_triangle(eye_enu_m, end, bvh.corners[k])
+                    hits.append((depth, bvh.corners[k], item))
         if not hits:
             return None
         hits.sort(key=lambda hit: hit[0])
@@ -118,8 +120,7 @@ class PickIndex:
             first = solid
         else:
             first = min(hits, key=lambda hit: self._widths_m2[hit[2]])
-        depth, k, item = first
-        corners = self._bvh.corners[k]
+        depth, corners, item = first
         normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
         normal /= max(float(np.linalg.norm(normal)), 1e-12)
         if normal @ direction > 0.0:
@@ -143,7 +144,7 @@ class PickIndex:
         origins = np.tile(np.asarray(eye_enu_m, np.float64), (len(directions), 1))
         first_hits(self._bodies, origins, np.ascontiguousarray(directions), REACH_M, depth_m, found)
         normals, is_met = np.zeros((len(directions), 3)), found >= 0
-        corners = self._body_corners[found[is_met]]
+        corners = self._bodies.corners[self._leaf_of_body[found[is_met]]]
         across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-12)
         away = np.einsum("nk,nk->n", across, directions[is_met]) > 0.0
