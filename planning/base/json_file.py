@@ -11,7 +11,7 @@ import sys
 import tempfile
 import tomllib
 import types
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import asdict, fields, is_dataclass
 from functools import lru_cache
@@ -512,11 +512,14 @@ def part_file(target: Path, mode: int = 0o644, *, is_lasting: bool = True) -> It
 def new_file_beside(target: Path, mode: int = 0o644) -> Iterator[Path]:
     """A new file beside `target` that is removed in the end, unless it has another name then."""
     _clear_parts(target.parent)
-    handle, name = tempfile.mkstemp(f".part{target.suffix}", f".{target.stem[:40]}.", target.parent)
-    os.close(handle)
-    part, descriptor = Path(name), None
+
+    def new() -> Path:
+        handle, name = tempfile.mkstemp(f".part{target.suffix}", f".{target.stem[:40]}.", target.parent)
+        os.close(handle)
+        return Path(name)
+
+    part, descriptor = _made_and_locked(new)
     try:
-        descriptor = _locked(part)
         part.chmod(mode)
         yield part
     finally:
@@ -536,8 +539,7 @@ def part_folder(parent: Path, stem: str) -> Iterator[Path]:
         It cannot be made.
     """
     _clear_parts(parent)
-    folder = Path(tempfile.mkdtemp(".part", f".{stem[:40]}.", parent))
-    descriptor = _locked(folder)
+    folder, descriptor = _made_and_locked(lambda: Path(tempfile.mkdtemp(".part", f".{stem[:40]}.", parent)))
     try:
         yield folder
     finally:
@@ -546,17 +548,35 @@ def part_folder(parent: Path, stem: str) -> Iterator[Path]:
             os.close(descriptor)
 
 
+def _made_and_locked(new: Callable[[], Path]) -> tuple[Path, int | None]:
+    """What `new` makes, and its lock: None where there are none, and others leave it alone then, too.
+
+    Until it is locked, another process may take it for one that was left: it has that one, and the next is made here.
+    """
+    while True:
+        part = new()
+        try:
+            descriptor = _locked(part)
+        except (FileNotFoundError, BlockingIOError):
+            continue
+        except OSError:
+            return part, None
+        if descriptor is None or (part.exists() and os.path.samestat(os.fstat(descriptor), part.stat())):
+            return part, descriptor
+        os.close(descriptor)
+
+
 def _locked(path: Path) -> int | None:
     """A lock on a file or folder in the making, by a descriptor of it; None on Windows, where what is open stays.
 
     Raises
     ------
     OSError
-        Somebody has it.
+        Somebody has it, or this file system has no locks.
     """
     if sys.platform == "win32":
         return None
-    descriptor = os.open(path, os.O_RDONLY)
+    descriptor = os.open(path, os.O_RDONLY if path.is_dir() else os.O_RDWR)  # NFS locks only what may be written
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:

@@ -1,9 +1,12 @@
 """Files of ours: written whole or not at all, through links, never over what is read; read or refused in words."""
 
+import errno
 import os
 import stat
 import subprocess
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
@@ -11,11 +14,14 @@ from typing import Literal
 
 import pytest
 
+from planning.base import json_file
 from planning.base.errors import InputError
 from planning.base.json_file import (
     check_output,
     expect_format,
+    part_file,
     part_files,
+    part_folder,
     read_json,
     read_toml,
     to_record,
@@ -268,17 +274,54 @@ write_atomically(Path(sys.argv[1]), b'x')
 def test_what_a_killed_writer_leaves_is_removed_and_what_a_living_one_writes_is_not(tmp_path):
     target, root = tmp_path / "a.json", Path(__file__).resolve().parents[3]
     command = [sys.executable, "-c", WRITER, str(target)]
-    writers = [subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=root) for _ in range(2)]
-    for writer in writers:
-        assert writer.stdout.readline() == b"written\n"
-    killed, living = writers
-    killed.kill()
-    killed.communicate()
-    (tmp_path / ".hidden").touch()
-    assert len(part_names(tmp_path)) == 5
-    subprocess.run([sys.executable, "-c", OTHER, str(tmp_path / "b.json")], check=True, cwd=root)
-    assert len(part_names(tmp_path)) == 4
-    living.communicate()
-    assert living.returncode == 0
-    assert part_names(tmp_path) == [".hidden", "a.json", "b.json"]
-    assert target.read_bytes() == b"half"
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "cwd": root}
+    with subprocess.Popen(command, **pipes) as killed, subprocess.Popen(command, **pipes) as living:
+        for writer in (killed, living):
+            assert writer.stdout.readline() == b"written\n"
+        killed.kill()
+        killed.communicate()
+        (tmp_path / ".hidden").touch()
+        assert len(part_names(tmp_path)) == 5
+        subprocess.run([sys.executable, "-c", OTHER, str(tmp_path / "b.json")], check=True, cwd=root)
+        assert len(part_names(tmp_path)) == 4
+        living.communicate()
+        assert living.returncode == 0
+        assert part_names(tmp_path) == [".hidden", "a.json", "b.json"]
+        assert target.read_bytes() == b"half"
+
+
+def test_files_in_the_making_and_those_who_clear_up_do_not_meet(tmp_path):
+    ends = time.monotonic() + 2.0
+
+    def write(name):
+        target, count = tmp_path / name, 0
+        while time.monotonic() < ends:
+            with part_file(target, is_lasting=False) as part, part_folder(tmp_path, name) as folder:
+                part.write_bytes(b"%d" % count)
+                (folder / "x").write_bytes(b"x")
+            assert target.read_bytes() == b"%d" % count
+            count += 1
+        return count
+
+    def clear():
+        while time.monotonic() < ends:
+            json_file._clear_parts.__wrapped__(tmp_path)
+
+    with ThreadPoolExecutor(4) as pool:
+        cleared = [pool.submit(clear) for _ in range(2)]
+        written = [pool.submit(write, name) for name in ("a.json", "b.json")]
+        assert all(one.result() > 10 for one in written)
+        assert all(one.result() is None for one in cleared)
+    assert part_names(tmp_path) == ["a.json", "b.json"]
+
+
+def test_files_are_written_where_the_file_system_has_no_locks(tmp_path, monkeypatch):
+    def no_locks(*_):
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr("fcntl.flock", no_locks)
+    write_atomically(tmp_path / "a.json", b"1")
+    with part_folder(tmp_path, "b"):
+        json_file._clear_parts.__wrapped__(tmp_path)
+        assert len(part_names(tmp_path)) == 2
+    assert part_names(tmp_path) == ["a.json"]
