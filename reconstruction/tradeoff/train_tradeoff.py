@@ -46,6 +46,10 @@ class Trial:
         PSNR of all held-out views in the end, mean.
     history
         PSNR of some of them, over their facades, by seconds of training.
+    light
+        What mirrored light was learned with; "" for splats alone.
+    effects
+        That are on, by name.
     """
 
     setting: Setting
@@ -56,6 +60,8 @@ class Trial:
     n_steps: int
     n_splats: int
     history: tuple[QualityPoint, ...]
+    light: str
+    effects: tuple[str, ...]
 
 
 def settings_of(base: TrainConfig, knobs: Mapping[str, Sequence[Any]]) -> tuple[Setting, ...]:
@@ -122,6 +128,8 @@ def _trial(setting: Setting, trained: TrainedModel, folder: Path, monitor: Monit
         trained.n_steps,
         trained.n_splats,
         trained.history,
+        "" if trained.record.light is None else trained.record.light.name,
+        tuple(decision.effect for decision in trained.record.decisions if decision.on),
     )
 
 

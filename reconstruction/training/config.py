@@ -197,12 +197,13 @@ class TrainConfig:
         Pixels of a photo, along each side, that one is made of before it is learned from; 0 for as many as leave some
         windows of it: `photos.decoded_photo.usual_reduce`.
     raster
-        Settings of the rasteriser, but for its threads. Splats are antialiased, other than in 2DGS and 3DGS: frames are
-        finer than a pixel in many photos (`python -m tests.tables --only 3b`).
+        Settings of the rasteriser. Splats are antialiased, other than in 2DGS and 3DGS: frames are finer than a pixel
+        in many photos (`python -m tests.tables --only 3b`).
     held_out
         Share of the views that are kept for scoring, chosen by their names and `seed`.
     threads
-        Of torch and the rasteriser. With one of torch, the same seed gives the same bits on a processor.
+        Of torch. With one, the same seed gives the same bits on a processor. All else takes `raster.threads`, or all
+        cores, and has the same bits with any number.
     checkpoint_every_s
         Between checkpoints; the last state is always kept.
     score_every_s

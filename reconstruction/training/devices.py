@@ -167,7 +167,7 @@ def _tried(config: TrainConfig, splats: Splats, view: View) -> CardTrial:
     scale = math.sqrt(min(1.0, config.window_px / (view.width_px * view.height_px)))
     size = max(1, round(scale * view.width_px)), max(1, round(scale * view.height_px))
     window = view.cropped((view.width_px - size[0]) // 2, (view.height_px - size[1]) // 2, *size)
-    settings = replace(config.raster, threads=config.threads)
+    settings = config.raster
     here_s, expected = _step(splats, window, settings)
     here_s = min(here_s, _step(splats, window, settings)[0])
     try:

@@ -26,7 +26,7 @@ _CONFIGS = {
         max_splats=80_000,
         reflections=ReflectionConfig(
             mlp=MlpShape(width=256, layers=6, position_order=10, direction_order=6),
-            steps=3000,
+            steps=20_000,
             passes=20.0,
         ),
     ),

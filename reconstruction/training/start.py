@@ -470,7 +470,7 @@ def start_model(
 
 
 def _show(model: SceneModel, config: TrainConfig, show: Show) -> None:
-    show(model.eval(), replace(config.raster, threads=config.threads))
+    show(model.eval(), config.raster)
 
 
 def _exposures(

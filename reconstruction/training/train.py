@@ -367,10 +367,8 @@ def _last_look(trainer: Trainer, trained: TrainedModel, source: PhotoSet, watchi
     """Score held-out views as `score` does, all of them where that fits into its share of the time limit."""
     if not trainer.is_first:
         return None
-    names, config = trained.record.held_out, trained.record.config
+    names = trained.record.held_out
     share = trainer.most_final_scoring_s() / max(trainer.final_scoring_s(), 1e-9)
     n_views = len(names) if share >= 1.0 else max(1, int(share * len(names)))
     chosen = [names[number * len(names) // n_views] for number in range(n_views)]
-    return quality_of(
-        score_views(trained, source, chosen, threads=config.threads, monitor=watching.monitor, psnr_alone=True)
-    )
+    return quality_of(score_views(trained, source, chosen, monitor=watching.monitor, psnr_alone=True))

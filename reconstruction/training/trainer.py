@@ -294,7 +294,7 @@ class Trainer(TrainingState):
         super().__init__(model, exposures, poses, transients, photos, strategy, config, extent_m, checkpoint, at)
         self.shown, self._record, self._watch = tuple(shown), record or {}, watch or Timer()
         self.at.spent_s = self.at.saved_at_s = self.at.began_s = self._watch()
-        self._settings = replace(config.raster, threads=config.threads, on_gpu=on_gpu)
+        self._settings = replace(config.raster, on_gpu=on_gpu)
         self._no_more, self._ranks = FixedNumber(), ranks
         self._reserve_s = 0.0
         self._last_px = last_px
@@ -494,7 +494,7 @@ class Trainer(TrainingState):
         falling = self.progress if cool_down is None else cool_down.progress_of_rates(at.spent_s)
         set_rates(self.optimiser, config.rates, at.step, max(self.progress, falling), at.factor)
         self.poses.settle(config.own_poses, self.progress, at.step * self._ranks.n, config.rates.poses)
-        move = self.poses(sample.number) if self.poses.are_learned(config.own_poses) else None
+        move = self.poses(sample.number) if self.poses.is_learned(config.own_poses, sample.number) else None
         glass = self.model.light
         more = None if glass is None else glass.regulariser(config.reflections, at.step)
         self.optimiser.zero_grad(set_to_none=True)

@@ -39,7 +39,8 @@ def measure(context: Context) -> Iterator[Row]:
         yield Row("planar", what, round(point.value, 2), "dB")
     beside = (
         f"whole pictures {found.whole_db:.1f} dB, SSIM of facades {found.ssim or 0.0:.3f}; {found.n_steps} steps, "
-        f"{found.n_splats} splats"
+        f"{found.n_splats} splats; light: {found.light or 'splats alone'}; "
+        f"on: {', '.join(found.effects) or 'no effect'}"
     )
     what = f"in the end ({found.seconds / 60.0:.0f} min), facades of unseen views"
     target, is_met = f"at least {WANTED_DB:g} dB", found.facade_db >= WANTED_DB
@@ -49,8 +50,9 @@ def measure(context: Context) -> Iterator[Row]:
 BENCHMARK = Benchmark(
     "preset-hour",
     "The preset of an hour",
-    f"The preset `{presets.HIGHER}` in its own hour of processor time, one thread, on {N_VIEWS} rendered photos of "
-    f"the bundled planar scene {WIDTH_PX} pixels wide, near field, 15 % of the views held out. Its rates fall until "
+    f"The preset `{presets.HIGHER}` in its own hour of processor time, half of what two cores have in an hour, on "
+    f"{N_VIEWS} rendered photos of the bundled planar scene {WIDTH_PX} pixels wide, near field, 15 % of the views held "
+    "out. Its rates fall until "
     "the hour ends: on the way it has less than a shorter one in the end.",
     measure,
 )

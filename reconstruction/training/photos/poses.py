@@ -100,11 +100,17 @@ class PoseShift:
 TRIED = 0.25
 """Share of the training after which it is decided whether poses go on being corrected."""
 
+MEAN_FROM = 0.4
+"""Of that, from which on corrections are averaged: they wander from look to look."""
+
+EACH_STAYS = 3
+"""Of so many photos one stays where it is said to be until then, and the model with it. Else model and photos follow
+each other away, ever further: right poses of 1024 px by 1.6 px in a quarter of an hour, which cost 2 dB."""
+
 WANDER = 11.0
 """Steps of Adam that corrections of right poses wander, over the square root of the looks at each photo: with steps
-of 0.1 px 1.0 px after 1.2 looks and 0.7 after 2.6 (planar, 85 photos of 128 px; as far at 512 px). After 5.3 it is
-0.9 again, which the tolerance is above: photos follow what the model does not show as yet. To correct right poses
-cost 2.7 dB (planar, 100 photos of 512 px, 10 minutes); poses that are 2 px off are seen to be 1.8 off."""
+of 0.1 px 0.6 px after 3 to 4 looks (planar, 85 photos of 512 px). To correct right poses cost 2.7 dB there in ten
+minutes; poses that are 2 px off are seen to be 1.3 off after three looks."""
 
 UNKNOWN = -1.0
 """Shift of photos that was not measured, or not yet."""
@@ -120,7 +126,7 @@ class PoseCorrections(nn.Module):
     """A correction of each photo's pose, 0 at first.
 
     It is learned in units of a pixel: turns by what a pixel sees, moves by as much at the scene's distance. So one rate
-    is right for pictures of all sizes. With the setting `auto` all are corrected in the first part of a training, and
+    is right for pictures of all sizes. With the setting `auto` most are corrected in the first part of a training, and
     taken back where they moved hardly further than chance would: what they would do then is follow the noise.
 
     Parameters
@@ -146,14 +152,18 @@ class PoseCorrections(nn.Module):
         self.register_buffer("axes", torch.from_numpy(axes).float())
         self.shift_px: Tensor
         self.register_buffer("shift_px", torch.tensor(UNKNOWN))
+        self.mean: Tensor
+        self.register_buffer("mean", torch.zeros(len(photos), 6))
+        self.n_in_mean: Tensor
+        self.register_buffer("n_in_mean", torch.tensor(0))
 
     def forward(self, number: int) -> Tensor:
         """Correction of a photo as `Move` has it, shape (6,)."""
-        return self._moves()[number]
+        return self._moves(self.pixels)[number]
 
-    def _moves(self) -> Tensor:
+    def _moves(self, pixels: Tensor) -> Tensor:
         units = torch.stack([LESS_MOVED * self.distances_m / self.focal_px, 1.0 / self.focal_px], dim=1)
-        return self.pixels * units.repeat_interleave(3, dim=1)
+        return pixels * units.repeat_interleave(3, dim=1)
 
     @torch.no_grad()
     def project(self) -> None:
@@ -163,34 +173,44 @@ class PoseCorrections(nn.Module):
     @torch.no_grad()
     def moves(self) -> tuple[Move, ...]:
         """Of all photos."""
-        return _rows(self._moves())
+        return _rows(self._moves(self.pixels))
 
-    def are_learned(self, setting: EffectSetting) -> bool:
-        """Whether the next step corrects poses."""
-        return setting == "on" or (setting == "auto" and not 0.0 <= float(self.shift_px) <= OwnPoses().tolerance)
+    def is_learned(self, setting: EffectSetting, number: int) -> bool:
+        """Whether the next step corrects the pose of a photo if it looks at that."""
+        shift_px = float(self.shift_px)
+        if setting != "auto":
+            return setting == "on"
+        return number % EACH_STAYS != 1 if shift_px == UNKNOWN else shift_px > OwnPoses().tolerance
 
     @torch.no_grad()
     def settle(self, setting: EffectSetting, progress: float, n_looks: int, rate_px: float) -> None:
         """Measure how far photos were moved, once; with `auto`, take corrections back that are not worth it.
 
+        To be called before each step.
+
         Parameters
         ----------
         progress
-            Of the training, 0 to 1: nothing is measured before `TRIED`.
+            Of the training, 0 to 1.
         n_looks
             At all photos together, so far.
         rate_px
             Of a step of Adam; what chance alone moves photos by is taken off, see `WANDER`.
         """
-        if progress < TRIED or setting == "off" or float(self.shift_px) != UNKNOWN:
+        if progress < MEAN_FROM * TRIED or setting == "off" or float(self.shift_px) != UNKNOWN:
             return
-        shift, turn = self._moves().split_with_sizes([3, 3], dim=1)
+        self.n_in_mean += 1
+        self.mean += (self.pixels - self.mean) / self.n_in_mean
+        if progress < TRIED:
+            return
+        shift, turn = self._moves(self.mean).split_with_sizes([3, 3], dim=1)
         seen = shift / self.distances_m[:, None] + torch.linalg.cross(turn, self.axes)
         across = seen - (seen * self.axes).sum(dim=1, keepdim=True) * self.axes
-        moved_px = float((self.focal_px * across.norm(dim=1)).median())
+        are_tried = [self.is_learned(setting, number) for number in range(len(self.pixels))]
+        moved_px = float((self.focal_px * across.norm(dim=1))[are_tried].median())
         chance_px = WANDER * rate_px * math.sqrt(len(self.pixels) / max(n_looks, 1))
         self.shift_px.fill_(math.sqrt(max(moved_px**2 - chance_px**2, 0.0)))
-        if not self.are_learned(setting):
+        if not self.is_learned(setting, 0):
             self.pixels.zero_()
 
     def decision(self, setting: EffectSetting, seconds: float) -> Decision:

@@ -13,6 +13,7 @@ from planning.base.progress import Trace
 from reconstruction.light.config import GridSettings, ReflectionConfig
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.light.reflection_mlp import MlpShape
+from reconstruction.splats.rasterising import numba_backend
 from reconstruction.training import trainer as trainer_module
 from reconstruction.training import training_state
 from reconstruction.training.callbacks import Callbacks, HeldOut
@@ -131,6 +132,23 @@ def test_splats_are_added_and_stay_below_their_number(make):
     n_before = len(trainer.model.splats)
     trainer.run(Callbacks())
     assert n_before < len(trainer.model.splats) <= 220
+
+
+def test_the_rasteriser_takes_all_cores_and_the_same_bits_come_out_with_one(make, monkeypatch):
+    asked, run = [], numba_backend.run_on_threads
+
+    def told(work, ranges, threads):
+        asked.append(threads)
+        run(work, ranges, threads)
+
+    monkeypatch.setattr(numba_backend, "run_on_threads", told)
+    trainers = [make(replace(CONFIG, iterations=3, raster=replace(CONFIG.raster, threads=n))) for n in (0, 1, 3)]
+    for trainer, threads in zip(trainers, (CONFIG.raster.threads, 1, 3), strict=True):
+        asked.clear()
+        trainer.run(Callbacks())
+        assert set(asked) == {threads} == {trainer.config.raster.threads}
+        assert_same(trainer, trainers[0])
+    assert CONFIG.raster.threads == 0
 
 
 def test_a_time_limit_is_gone_through_from_the_joint_training_s_own_beginning(make):

@@ -186,11 +186,11 @@ def test_photos_that_hardly_move_are_put_back_and_others_go_on(tmp_path):
     little, much = 0.5 * OwnPoses().tolerance, 3.0 * OwnPoses().tolerance
     for px, is_on in ((little, False), (much, True)):
         poses = corrected(photos, [[px, 0.0, 0.0], [0.0, 0.0, px], [px, 0.0, 0.0]])
-        assert poses.are_learned("auto")
+        assert poses.is_learned("auto", 0)
         poses.settle("auto", TRIED - 0.01, 1, 0.0)
         assert poses.pixels.any()
         poses.settle("auto", TRIED, 1, 0.0)
-        assert poses.are_learned("auto") is is_on
+        assert poses.is_learned("auto", 0) is is_on
         assert bool(poses.pixels.any()) is is_on
         decision = poses.decision("auto", 100.0)
         assert decision.on is is_on
@@ -201,20 +201,44 @@ def test_photos_that_hardly_move_are_put_back_and_others_go_on(tmp_path):
 def test_photos_that_move_as_chance_would_move_them_are_put_back(tmp_path, looks, is_on):
     photos = cameras(tmp_path, 3)
     px = 1.2 * OwnPoses().tolerance
-    poses = corrected(photos, [[px, 0.0, 0.0], [0.0, 0.0, px], [px, 0.0, 0.0]])
+    poses = corrected(photos, [[px, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, px]])
     poses.settle("auto", TRIED, 3 * looks, 0.1)
-    assert poses.are_learned("auto") is is_on
+    assert poses.is_learned("auto", 0) is is_on
     assert bool(poses.pixels.any()) is is_on
+
+
+def test_some_photos_stay_until_it_is_decided_and_tell_nothing_of_how_far_others_move(tmp_path):
+    photos = cameras(tmp_path, 9)
+    poses = corrected(photos, np.where(np.arange(9)[:, None] % 3 == 1, 0.0, [[3.0, 0.0, 0.0]]))
+    assert [poses.is_learned("auto", number) for number in range(3)] == [True, False, True]
+    assert all(poses.is_learned("on", number) for number in range(9))
+    poses.settle("auto", TRIED, 9, 0.0)
+    assert float(poses.shift_px) > 2.5
+    assert all(poses.is_learned("auto", number) for number in range(9))
+
+
+@pytest.mark.parametrize(("shift_px", "is_on"), [(0.0, False), (3.0, True)])
+def test_poses_that_wander_about_where_they_are_said_to_be_are_put_back(tmp_path, shift_px, is_on):
+    photos, rng, n_steps = cameras(tmp_path, 30), np.random.default_rng(4), 600
+    away = shift_px * rng.choice([-1.0, 1.0], (30, 3))
+    poses = corrected(photos, away)
+    for step in range(n_steps):
+        with torch.no_grad():
+            if step % 10 == 0:  # from one look at a photo to the next
+                poses.pixels[:, 3:] = torch.tensor(away + rng.normal(0.0, 1.5, (30, 3))).float()
+        poses.settle("auto", TRIED * (step + 1) / n_steps, 30 * (1 + step // 10), 0.1)
+    assert poses.is_learned("auto", 0) is is_on
+    assert (float(poses.shift_px) > 2.0) is is_on
 
 
 def test_the_user_decides_whatever_photos_do(tmp_path):
     photos = cameras(tmp_path, 2)
     poses = corrected(photos, [[0.1, 0.0, 0.0], [0.0, 0.0, 0.1]])
     poses.settle("on", 1.0, 1, 0.0)
-    assert poses.are_learned("on")
+    assert poses.is_learned("on", 1)
     assert poses.pixels.any()
     assert poses.decision("on", 1.0).on
-    assert not PoseCorrections(photos, np.zeros(3)).are_learned("off")
+    assert not PoseCorrections(photos, np.zeros(3)).is_learned("off", 0)
     assert not PoseCorrections(photos, np.zeros(3)).decision("auto", 1.0).on
 
 
