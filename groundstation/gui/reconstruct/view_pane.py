@@ -196,6 +196,7 @@ class ViewBar(QWidget):
         self.home.setToolTip(self.tr("Show the view from where the photo was taken (0)"))
         self.layer.setToolTip(self.tr("What the picture is made of"))
         layout = WrappingRow(self)
+        layout.setContentsMargins(6, 0, 6, 0)
         for title, box, least in (
             (self.tr("Model"), self.model, 8),
             (self.tr("Layer"), self.layer, 7),

@@ -264,25 +264,27 @@ class WrappingRow(QLayout):
 
     def heightForWidth(self, width: int) -> int:  # noqa: N802
         """Height of as many rows as it takes."""
-        return self._arrange(QRect(0, 0, width, 0), is_trial=True)
+        around = self.contentsMargins()
+        room = QRect(0, 0, width - around.left() - around.right(), 0)
+        return self._arrange(room, is_trial=True) + around.top() + around.bottom()
 
     def sizeHint(self) -> QSize:  # noqa: N802
         """All in one row."""
         hints = [item.sizeHint() for item in self._shown()]
         wide = sum(hint.width() for hint in hints) + self.spacing() * max(0, len(hints) - 1)
-        return QSize(wide, max((hint.height() for hint in hints), default=0))
+        return QSize(wide, max((hint.height() for hint in hints), default=0)).grownBy(self.contentsMargins())
 
     def minimumSize(self) -> QSize:  # noqa: N802
         """One below the other."""
         sizes = [item.minimumSize() for item in self._shown()]
         return QSize(
             max((size.width() for size in sizes), default=0), max((size.height() for size in sizes), default=0)
-        )
+        ).grownBy(self.contentsMargins())
 
     def setGeometry(self, room: QRect) -> None:  # noqa: N802
         """Put everything where it goes."""
         super().setGeometry(room)
-        self._arrange(room, is_trial=False)
+        self._arrange(room.marginsRemoved(self.contentsMargins()), is_trial=False)
 
     def _shown(self) -> list[QLayoutItem]:
         return [item for item in self._items if not item.isEmpty()]
@@ -332,7 +334,8 @@ class ButtonGrid(WrappingRow):
 
     def sizeHint(self) -> QSize:  # noqa: N802
         """With all columns."""
-        wide = self._n_columns * (self._cell_px() + self.spacing()) - self.spacing()
+        around = self.contentsMargins()
+        wide = self._n_columns * (self._cell_px() + self.spacing()) - self.spacing() + around.left() + around.right()
         return QSize(wide, self.heightForWidth(wide))
 
     def _cell_px(self) -> int:
