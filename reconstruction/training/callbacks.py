@@ -74,11 +74,14 @@ class TrainingSnapshot:
     settings: RasterSettings
 
 
-Show = Callable[[SceneModel, RasterSettings], object]
-"""Of a model before its first step, and how it is to be drawn."""
+History = Sequence[tuple[float, float]]
+"""PSNR, dB, of held-out views, by seconds."""
+
+Show = Callable[[SceneModel, RasterSettings, History], object]
+"""Of a model before its first step: how it is to be drawn, and how good it was until now."""
 
 
-def unshown(model: SceneModel, settings: RasterSettings) -> None:
+def unshown(model: SceneModel, settings: RasterSettings, history: History) -> None:
     """Nobody looks."""
 
 
@@ -102,7 +105,7 @@ class Callbacks:
         Called after each step, and again and again while it is paused; its time counts as the training's.
     show_before
         Called with what there is to see before the first step: splats as they were placed, then with the light that was
-        learned so far, and as trials left them.
+        learned so far, and as trials left them. Held-out views are scored then, too.
     """
 
     monitor: Monitor = QUIET

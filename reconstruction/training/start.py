@@ -7,7 +7,7 @@ import hashlib
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -46,11 +46,11 @@ from reconstruction.splats.rasterising.views import View
 from reconstruction.splats.sky import Sky
 from reconstruction.splats.splats import NO_PANEL, Splats, splats_from_tensors, splats_to_tensors
 from reconstruction.splats.surfels import KnownScene, known_scene, model_origin, points_only, scene_of_points
-from reconstruction.training.callbacks import Callbacks, HeldOut, Show, unshown
+from reconstruction.training.callbacks import Callbacks, HeldOut, Show, quality_db, unshown
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.methods.shader import Shader, Surroundings
 from reconstruction.training.methods.shaders import converted_for_method, shader_of, with_primitive
-from reconstruction.training.model.joint_model import SceneModel
+from reconstruction.training.model.joint_model import Picture, SceneModel
 from reconstruction.training.model.record import SiteRecord, site_record
 from reconstruction.training.photos.decoded_photo import usual_reduce
 from reconstruction.training.photos.exposures import Exposures, told_by_points
@@ -353,6 +353,8 @@ class Start:
         What learning light had to survive.
     transients
         Blocks of photos that were left out meanwhile.
+    history
+        PSNR, dB, of held-out views whenever somebody was shown the model, by seconds.
     """
 
     config: TrainConfig
@@ -366,6 +368,7 @@ class Start:
     moves: tuple[Move, ...] = ()
     notes: tuple[str, ...] = ()
     transients: NDArray[np.bool_] | None = None
+    history: tuple[tuple[float, float], ...] = ()
 
 
 def start_model(
@@ -433,7 +436,11 @@ def start_model(
     else:
         splats, on_points = _placed_splats(source, learned, scene, origin, config, monitor)
         decisions += on_points
-    _show(_joined(source, learned, splats, None, None, origin, config), config, show)
+    look = None
+    if show is not unshown:
+        views = held_out_views(source, shown_names(held_out), origin, round(SHOWN_SHARE * config.memory_bytes))
+        look = _Look(show, config, watch, views)
+        look(_joined(source, learned, splats, None, None, origin, config))
     light: TrainedReflections | None = None
     shader: Shader | None = None
     is_told = False
@@ -447,7 +454,7 @@ def start_model(
         splats = converted_for_method(splats, config, shader)
     else:
         first = _learned_light(
-            source, learned, config, splats, monitor, watch, checkpoint, interrupted, decisions, show
+            source, learned, config, splats, monitor, watch, checkpoint, interrupted, decisions, look
         )
         light, splats, decisions, is_told = first.light, first.splats, first.decisions, first.is_in_splats
     moves = learned_moves(None if light is None else light.panels.light, len(learned))
@@ -466,11 +473,31 @@ def start_model(
         moves,
         notes if light is None else (*notes, *light.notes),
         None if light is None else light.transients,
+        () if look is None else tuple(look.history),
     )
 
 
-def _show(model: SceneModel, config: TrainConfig, show: Show) -> None:
-    show(model.eval(), config.raster)
+@dataclass(slots=True, eq=False)
+class _Look:
+    """Shows somebody a model before its first step, and scores the views that trainings are looked at by."""
+
+    show: Show
+    config: TrainConfig
+    watch: Timer
+    views: tuple[HeldOut, ...]
+    history: list[tuple[float, float]] = field(default_factory=list)
+
+    @torch.no_grad()
+    def __call__(self, model: SceneModel) -> None:
+        model.eval()
+        settings, degree = self.config.raster, self.config.degree_at(0.0)
+
+        def displayed(held_out: HeldOut) -> Tensor:
+            picture: Picture = model(held_out.sample.view, held_out.gain, degree, settings=settings)
+            return picture.display.clamp(0.0, 1.0)
+
+        self.history.append((self.watch(), quality_db(self.views, displayed)))
+        self.show(model, settings, self.history)
 
 
 def _exposures(
@@ -485,21 +512,32 @@ def _exposures(
     return Exposures(known[:, None] * point_gains), replace(source, own_exposures={**source.own_exposures, **own})
 
 
+SHOWN_VIEWS = 4
+"""Held-out views that the quality is measured on while training runs."""
+
+SHOWN_SHARE = 0.25
+"""Of the memory for photos, at most, for held-out ones that the quality is measured on."""
+
 SHOWN_PX = 512 * 384
 """About as many pixels of held-out views are looked at: larger ones are made smaller, so that looking takes no time."""
 
 
+def shown_names(held_out: Sequence[str]) -> Sequence[str]:
+    """Of the held-out views, those that are looked at while a training runs."""
+    return held_out[:: -(-len(held_out) // SHOWN_VIEWS)]
+
+
 def held_out_views(
-    source: PhotoSet, names: Sequence[str], origin_enu_m: Array, memory_bytes: int, closing: ExitStack
+    source: PhotoSet, names: Sequence[str], origin_enu_m: Array, memory_bytes: int
 ) -> tuple[HeldOut, ...]:
     """Views that the quality is measured on while a training runs, made smaller."""
     most = max(photo.intrinsics.width_px * photo.intrinsics.height_px for photo in source.photos)
     few = StreamSettings(max(1, memory_bytes), reduce=max(1, math.isqrt(most // SHOWN_PX)))
-    shown = closing.enter_context(PhotoStream(source, names, origin_enu_m, few))
-    return tuple(
-        HeldOut(shown.frame(number), source.own_exposures.get(photo.name, 1.0))
-        for number, photo in enumerate(shown.photos)
-    )
+    with PhotoStream(source, names, origin_enu_m, few) as shown:
+        return tuple(
+            HeldOut(shown.frame(number), source.own_exposures.get(photo.name, 1.0))
+            for number, photo in enumerate(shown.photos)
+        )
 
 
 # Whether light apart from the splats is worth it: both ways are tried for a short while, and scored on views held back.
@@ -589,7 +627,7 @@ def _is_worth(
     config: TrainConfig,
     watch: Timer,
     monitor: Monitor,
-    show: Show,
+    look: _Look | None,
 ) -> _Worth:
     """Train with light apart, of one model or several, and without for a short while; score all on unseen photos.
 
@@ -608,12 +646,12 @@ def _is_worth(
                 trials[name] = _joint_trial(source, seen, scored, splats, light, config, len(names) + 1, watch, closing)
         going = [*names]
         scores: dict[ModelName, NDArray[np.float64]] = {}
-        for look in range(1, LOOKS + 1):
+        for number in range(1, LOOKS + 1):
             for name in (*going, ALONE_MODEL):
                 done = sum(trial.trainer.progress for other, trial in trials.items() if other != name) / len(trials)
                 part = PartOf(monitor, say("trying light together with splats"), done, done + 1.0 / len(trials))
                 with _turn(trials.values(), trials[name]):
-                    trials[name].trainer.run(Callbacks(part), look / LOOKS)
+                    trials[name].trainer.run(Callbacks(part), number / LOOKS)
             with _turn(trials.values()):
                 scores |= {name: np.array(_of_views(trials[name])) for name in (*going, ALONE_MODEL)}
             best = max(going, key=lambda name: float(scores[name].mean()))
@@ -625,7 +663,8 @@ def _is_worth(
     unsure_db = standard_error(scores[best] - scores[ALONE_MODEL])
     worth = decide(SeparateLight(), (means[best], means[ALONE_MODEL], unsure_db, tried.trials.seconds))
     better = trials[best if worth.on else ALONE_MODEL]
-    _show(better.trainer.model, config, show)
+    if look is not None:
+        look(better.trainer.model)
     kept = splats_from_tensors(splats_to_tensors(better.trainer.model.splats), str(source.folder))
     return _Worth(worth, best if worth.on else ALONE_MODEL, means, kept)
 
@@ -663,7 +702,7 @@ def _joint_trial(
     memory_bytes = config.memory_bytes // (2 * n_trials)
     settings = StreamSettings(memory_bytes, config.window_px, config.reduce, with_normals)
     photos = closing.enter_context(PhotoStream(source, [photo.name for photo in seen], origin, settings))
-    shown = held_out_views(source, scored, origin, memory_bytes, closing)
+    shown = held_out_views(source, scored, origin, memory_bytes)
     timer = Timer(watch.clock)
     trainer = Trainer(
         model,
@@ -724,7 +763,7 @@ def _learned_light(
     checkpoint: Path | None,
     interrupted: InterruptedLightStage | None,
     before: tuple[Decision, ...],
-    show: Show,
+    look: _Look | None,
 ) -> _LightLearned:
     """The light, or harmonics where splats alone tell more, after what was decided `before`."""
     settings = replace(
@@ -747,10 +786,10 @@ def _learned_light(
     digest = checksum(rays)
     no_decisions: tuple[Decision, ...] = ()
 
-    def look(light: TrainedReflections) -> None:
-        _show(_with_light(source, learned, splats, light, config), config, show)
+    def look_at(light: TrainedReflections) -> None:
+        if look is not None:
+            look(_with_light(source, learned, splats, light, config))
 
-    is_watched = show is not unshown
     if interrupted is None:
         name, decisions = config.light, no_decisions
         if name == "auto" and config.light_apart == "off":
@@ -759,13 +798,13 @@ def _learned_light(
             quick = replace(settings, transients="off", time_limit_s=_light_limit_s(config, watch))
             tried = try_lights(rays, source.panels, quick, monitor, device=config.tensors_on)
             name, decisions = ("environment-map", no_decisions) if tried is None else chosen(tried.trials)
-            if tried is not None and is_watched:
-                look(copy.deepcopy(tried.found[name]))
+            if tried is not None and look is not None:
+                look_at(copy.deepcopy(tried.found[name]))
             if config.light_apart == "on":
                 decisions = (*decisions, decide(SeparateLight(), None, "on"))
             elif tried is not None and name != ALONE_MODEL and decisions[0].size < CLEAR_DB:
                 names = (name, *contenders(tried.trials, name))
-                worth = _is_worth(source, learned, splats, tried, names, config, watch, monitor, show)
+                worth = _is_worth(source, learned, splats, tried, names, config, watch, monitor, look)
                 name, splats = worth.name, worth.splats
                 if len(names) > 1:
                     decisions = (decisions[0], with_splats(worth.scores_db, tried.trials.seconds))
@@ -804,7 +843,7 @@ def _learned_light(
             keeping=keeping,
             device=config.tensors_on,
             clock=watch.clock,
-            look=look if is_watched else None,
+            look=None if look is None else look_at,
         )
     except ValueError as error:
         if interrupted is None:

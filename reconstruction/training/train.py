@@ -32,9 +32,16 @@ from reconstruction.training.photos.photo_stream import PhotoStream, StreamSetti
 from reconstruction.training.photos.poses import PoseCorrections, moved, one_after_other
 from reconstruction.training.photos.transients import Transients
 from reconstruction.training.ranks import ALONE, Ranks
-from reconstruction.training.start import Start, held_out_views, interrupted_light_stage, start_model
+from reconstruction.training.start import (
+    SHOWN_SHARE,
+    Start,
+    held_out_views,
+    interrupted_light_stage,
+    shown_names,
+    start_model,
+)
 from reconstruction.training.timer import Timer
-from reconstruction.training.trainer import SHOWN_VIEWS, Trainer, strategy_of
+from reconstruction.training.trainer import Trainer, strategy_of
 from reconstruction.training.training_state import read_checkpoint
 
 TRIM_THRESHOLD, TOP_PAD, MMAP_THRESHOLD = -1, -2, -3
@@ -74,10 +81,6 @@ def _gnu_library() -> Any:
         return None
     library = ctypes.CDLL(None)
     return library if hasattr(library, "gnu_get_libc_version") else None
-
-
-SHOWN_SHARE = 0.25
-"""Of the memory for photos, at most, for held-out ones that the quality is measured on."""
 
 
 @freed_memory_retained()
@@ -170,6 +173,7 @@ def _started(
             checkpoint=checkpoint,
             record=asdict(record),
             notes=start.notes,
+            history=start.history,
             ranks=ranks,
             watch=watch,
             last_px=_pixels(source, record.held_out),
@@ -295,8 +299,8 @@ def _photos(source: PhotoSet, record: ModelRecord, closing: ExitStack) -> tuple[
         round((1.0 - SHOWN_SHARE) * config.memory_bytes), config.window_px, config.reduce, with_normals
     )
     photos = closing.enter_context(PhotoStream(source, record.learned, origin, settings))
-    names = record.held_out[:: -(-len(record.held_out) // SHOWN_VIEWS)]
-    return photos, held_out_views(source, names, origin, round(SHOWN_SHARE * config.memory_bytes), closing)
+    names = shown_names(record.held_out)
+    return photos, held_out_views(source, names, origin, round(SHOWN_SHARE * config.memory_bytes))
 
 
 def _poses(source: PhotoSet, record: ModelRecord) -> PoseCorrections:

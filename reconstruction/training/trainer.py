@@ -203,9 +203,6 @@ LEAST_PROGRESS = 0.02
 PAUSE_S = 0.05
 """Between looks at whether a pause is over."""
 
-SHOWN_VIEWS = 4
-"""Held-out views that the quality is measured on while training runs."""
-
 LAST_SHARE = 0.05
 """Of a time limit, at most, for scoring held-out views in full when it has ended."""
 
@@ -258,8 +255,8 @@ class Trainer(TrainingState):
         File to write; None for none.
     record
         Of the model, to be written with each checkpoint.
-    notes
-        What had to be survived before.
+    notes, history
+        What had to be survived before, and how good it was.
     ranks
         Processes that train it together; each has a trainer of its own.
     watch
@@ -285,12 +282,13 @@ class Trainer(TrainingState):
         checkpoint: Path | None = None,
         record: dict[str, Any] | None = None,
         notes: Sequence[str] = (),
+        history: Sequence[tuple[float, float]] = (),
         ranks: Ranks = ALONE,
         watch: Timer | None = None,
         last_px: int = 0,
         on_gpu: bool = False,
     ) -> None:
-        at = Progress(window_px=photos.window_px or config.window_px, notes=[*notes])
+        at = Progress(window_px=photos.window_px or config.window_px, history=[*history], notes=[*notes])
         super().__init__(model, exposures, poses, transients, photos, strategy, config, extent_m, checkpoint, at)
         self.shown, self._record, self._watch = tuple(shown), record or {}, watch or Timer()
         self.at.spent_s = self.at.saved_at_s = self.at.began_s = self._watch()

@@ -41,7 +41,7 @@ from planning.base.progress import Trace, hear_compiling
 
 if TYPE_CHECKING:
     from reconstruction.splats.rasterising.raster_types import RasterSettings
-    from reconstruction.training.callbacks import TrainingSnapshot
+    from reconstruction.training.callbacks import History, TrainingSnapshot
     from reconstruction.training.model.joint_model import SceneModel
 
 REPORT_S = 0.1
@@ -202,9 +202,10 @@ class _Server:
         if not self._is_joint:
             self._look()
 
-    def _show_before(self, model: SceneModel, settings: RasterSettings) -> None:
+    def _show_before(self, model: SceneModel, settings: RasterSettings, history: History) -> None:
         self._render_queue.keep_placed(model, settings)
         self._tell(FirstLook())
+        self._tell_measured(history)
 
     def _visit(self, visit: TrainingSnapshot) -> None:
         self._render_queue.keep_snapshot(visit)
@@ -217,12 +218,15 @@ class _Server:
             phase: Phase = visit.state
             at = visit.step, visit.seconds, visit.progress, visit.left_s
             self._tell(Stepped(phase, *at, len(visit.model.splats), visit.terms))
-        for t_s, value in visit.history[self._n_measured :]:
-            self._tell(Measured(t_s, value))
-        self._n_measured = max(self._n_measured, len(visit.history))
+        self._tell_measured(visit.history)
         while self._look():
             pass
         self._render_queue.judge(self._requests.errors, visit)
+
+    def _tell_measured(self, history: History) -> None:
+        for t_s, value in history[self._n_measured :]:
+            self._tell(Measured(t_s, value))
+        self._n_measured = max(self._n_measured, len(history))
 
     def _look(self) -> bool:
         """Answer one look; whether there was one."""

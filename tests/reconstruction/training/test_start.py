@@ -130,10 +130,11 @@ def light_apart(folder, config, monkeypatch, others=(), show=unshown, monitor=QU
 def test_what_is_placed_and_ever_better_light_are_shown_before_the_first_step(tmp_path, monkeypatch):
     monkeypatch.setattr(light_training, "LOOK_EVERY_S", 0.0)
     write_data_set(tmp_path / "same", n=16)
-    source, errors = read_photo_set(tmp_path / "same"), []
+    source, errors, scores = read_photo_set(tmp_path / "same"), [], []
     photo = source.photos[0]
 
-    def look(model, settings):
+    def look(model, settings, history):
+        scores[:] = history
         display = render_view(model, View.of(photo, model.origin_enu_m), settings=settings).display
         errors.append(float(np.abs(display - source.picture(photo) / 255.0).mean()))
 
@@ -142,6 +143,9 @@ def test_what_is_placed_and_ever_better_light_are_shown_before_the_first_step(tm
     assert max(tried, tried_with_splats) < placed < 0.3
     assert learned
     assert learned[-1] < placed
+    assert len(scores) == len(errors)
+    assert [t_s for t_s, _ in scores] == sorted(t_s for t_s, _ in scores)
+    assert scores[-1][1] > scores[0][1]
 
 
 @pytest.mark.slow
