@@ -160,12 +160,10 @@ def checksum(rays: GlassRays) -> str:
 
 Array = NDArray[np.float64]
 
-
 # What the learning of light alone found out about panes, put into the splats on them.
 #
 # Both models say the same picture then, so that the joint training starts where the other ended: with reflectivity,
-# base
-# reflectance and colour from elsewhere, the light that was learned would be wrong for them.
+# base reflectance and colour from elsewhere, the light that was learned would be wrong for them.
 
 MOST_DIRECTIONS = 96
 """That a pane's colour is fitted to: far more than a degree has harmonics."""
@@ -438,8 +436,7 @@ def start_model(
         decisions += on_points
     look = None
     if show is not unshown:
-        views = held_out_views(source, shown_names(held_out), origin, round(SHOWN_SHARE * config.memory_bytes))
-        look = _Look(show, config, watch, views)
+        look = _Look(show, config, watch, shown_views(source, held_out, origin, config.memory_bytes))
         look(_joined(source, learned, splats, None, None, origin, config))
     light: TrainedReflections | None = None
     shader: Shader | None = None
@@ -522,9 +519,10 @@ SHOWN_PX = 512 * 384
 """About as many pixels of held-out views are looked at: larger ones are made smaller, so that looking takes no time."""
 
 
-def shown_names(held_out: Sequence[str]) -> Sequence[str]:
-    """Of the held-out views, those that are looked at while a training runs."""
-    return held_out[:: -(-len(held_out) // SHOWN_VIEWS)]
+def shown_views(source: PhotoSet, names: Sequence[str], origin: Array, memory_bytes: int) -> tuple[HeldOut, ...]:
+    """Of all held-out views, those that are looked at while a training runs, in their share of the memory."""
+    some = names[:: -(-len(names) // SHOWN_VIEWS)]
+    return held_out_views(source, some, origin, round(SHOWN_SHARE * memory_bytes))
 
 
 def held_out_views(

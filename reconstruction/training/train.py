@@ -35,9 +35,8 @@ from reconstruction.training.ranks import ALONE, Ranks
 from reconstruction.training.start import (
     SHOWN_SHARE,
     Start,
-    held_out_views,
     interrupted_light_stage,
-    shown_names,
+    shown_views,
     start_model,
 )
 from reconstruction.training.timer import Timer
@@ -299,8 +298,7 @@ def _photos(source: PhotoSet, record: ModelRecord, closing: ExitStack) -> tuple[
         round((1.0 - SHOWN_SHARE) * config.memory_bytes), config.window_px, config.reduce, with_normals
     )
     photos = closing.enter_context(PhotoStream(source, record.learned, origin, settings))
-    names = shown_names(record.held_out)
-    return photos, held_out_views(source, names, origin, round(SHOWN_SHARE * config.memory_bytes))
+    return photos, shown_views(source, record.held_out, origin, config.memory_bytes)
 
 
 def _poses(source: PhotoSet, record: ModelRecord) -> PoseCorrections:

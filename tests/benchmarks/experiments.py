@@ -22,6 +22,7 @@ from reconstruction.light.reflection_mlp import MlpShape
 from reconstruction.light.reflective_panels import ModelName
 from reconstruction.light.training import score_views, train_reflections
 from reconstruction.scenes.parameters import RenderSettings, SceneRequest
+from reconstruction.training.config import TrainConfig
 from tests.benchmarks.harness import Row
 
 QUICK_N_VIEWS, QUICK_WIDTH_PX = 12, 64
@@ -48,6 +49,11 @@ def rendered(scene: str, folder: Path, n_views: int, width_px: int) -> Path:
     request = SceneRequest(scene, n_views=n_views, width_px=width_px, n_points=0, settings=RenderSettings())
     render_photos(request, folder, 1)
     return folder
+
+
+def on_one_thread(config: TrainConfig) -> TrainConfig:
+    """The same, drawing splats on one thread, for trainings that are compared by their processor time."""
+    return replace(config, raster=replace(config.raster, threads=1))
 
 
 class Experiment:

@@ -14,6 +14,7 @@ from reconstruction.scenes.parameters import SceneRequest
 from reconstruction.training.config import LightSetting, TrainConfig
 from reconstruction.training.model.score import mean_of, score_views
 from reconstruction.training.train import train_model
+from tests.benchmarks.experiments import on_one_thread
 from tests.benchmarks.harness import Benchmark, Context, Row, timer
 
 N_VIEWS, WIDTH_PX = 60, 128
@@ -38,7 +39,7 @@ def measure(context: Context) -> Iterator[Row]:
         for name, method, light in KINDS:
             with timer() as seconds:
                 begun_s = time.process_time()
-                trained = train_model(folder, _config(context.is_quick, method, light))
+                trained = train_model(folder, on_one_thread(_config(context.is_quick, method, light)))
                 processor_s = time.process_time() - begun_s
             scores = score_views(trained, source, trained.record.held_out)
             found[name] = mean_of(score.facade.psnr_db for score in scores) or 0.0

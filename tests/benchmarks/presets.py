@@ -18,7 +18,7 @@ from reconstruction.tradeoff.scene_tradeoff import ERROR_AXIS
 from reconstruction.tradeoff.train_tradeoff import BASE, Setting, Trial, run_settings, settings_of, trial_panels
 from reconstruction.training.config import TrainConfig
 from reconstruction.training.presets import preset
-from tests.benchmarks.experiments import rendered
+from tests.benchmarks.experiments import on_one_thread, rendered
 from tests.benchmarks.harness import Benchmark, Context, Row
 
 N_VIEWS, WIDTH_PX = 100, 256
@@ -76,7 +76,7 @@ def _preset(is_quick: bool) -> str:
 
 
 def _budget(config: TrainConfig, seconds: float) -> TrainConfig:
-    return replace(config, time_limit_s=seconds, score_every_s=seconds / POINTS)
+    return on_one_thread(replace(config, time_limit_s=seconds, score_every_s=seconds / POINTS))
 
 
 def _settings(budget_s: float, is_quick: bool) -> list[Setting]:

@@ -16,9 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import cv2
-import numba
 import numpy as np
-import torch
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
@@ -47,6 +45,7 @@ from reconstruction.training.presets import preset
 from reconstruction.training.timer import Timer
 from reconstruction.training.train import train_model
 from reconstruction.warm_up import compile_kernels
+from tests.benchmarks.experiments import on_one_thread
 from tests.benchmarks.harness import DATA_VARIABLE, Benchmark, Context, Row, Skipped
 
 Array = NDArray[np.float64]
@@ -63,20 +62,10 @@ MOST_BELOW_DB = 0.2
 def trained_within(
     folder: Path, method: str, seconds: float, gain: HeldOutGain = "none", more: Mapping[str, Any] | None = None
 ) -> tuple[TrainedModel, tuple[ViewScores, ...]]:
-    """A training with the usual settings, by processor time, and scores of the views held out.
-
-    All on one thread: others wait by looking again and again, which counts as time of the processor.
-    """
+    """A training with the usual settings, by processor time, and scores of the views held out."""
     config = config_of({"method": method}, preset("10min"), Path("--method"))
     config = replace(config, time_limit_s=seconds, iterations=ENDLESS, score_every_s=seconds, **(more or {}))
-    before = torch.get_num_threads(), numba.get_num_threads()
-    torch.set_num_threads(1)
-    numba.set_num_threads(1)
-    try:
-        trained = train_model(folder, config, watch=Timer(time.process_time))
-    finally:
-        torch.set_num_threads(before[0])
-        numba.set_num_threads(before[1])
+    trained = train_model(folder, on_one_thread(config), watch=Timer(time.process_time))
     kept = stored_lpips_weights()
     weights = read_lpips_weights(kept) if kept else None
     return trained, score_views(trained, read_photo_set(folder), trained.record.held_out, weights, gain, threads=1)

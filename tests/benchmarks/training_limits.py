@@ -21,7 +21,7 @@ from reconstruction.training.photos.decoded_photo import Decoding, decode_photo,
 from reconstruction.training.presets import preset
 from reconstruction.training.timer import Timer
 from reconstruction.training.train import train_model
-from tests.benchmarks.experiments import rendered
+from tests.benchmarks.experiments import on_one_thread, rendered
 from tests.benchmarks.harness import Benchmark, Context, Row
 
 N_VIEWS, WIDTH_PX = 8, 768
@@ -101,7 +101,7 @@ def _costs(folder: Path, is_quick: bool) -> _Costs:
 
 def _joint(folder: Path, name: str) -> float:
     """Processor seconds of a joint step for each megapixel of its window: the median of a few."""
-    base = preset(name)
+    base = on_one_thread(preset(name))
     config = replace(
         base,
         light="radiance-grid",

@@ -166,8 +166,7 @@ class _Server:
         else:
             self._is_joint = False
             self._render_queue.keep_trained(files.trained)
-            for point in files.trained.history[self._n_measured :]:
-                self._tell(Measured(point.t_s, point.value))
+            self._tell_measured([(point.t_s, point.value) for point in files.trained.history])
             self._tell(Ended("done", None, train_summary(files)))
 
     def _ask(self, order: AskScene) -> None:
