@@ -49,8 +49,9 @@ DEFAULT_VIEWS, MAX_VIEWS = 560, 20_000
 LARGEST_SEED = 2**63 - 1
 """What 64-bit integers of files and other programs hold."""
 
-DEFAULT_SHARE = 0.99
-"""Share of the reachable sections that is covered when no number of views is given."""
+DEFAULT_SHARE, DEFAULT_GAIN_DB = 0.99, 0.5
+"""Where greedy is told no goal: share of the reachable sections that a choice by sections covers, and what another
+battery still has to bring to one for the model's pictures: what eyes begin to see."""
 
 GOAL, HOW, WHICH, FLIGHT = "how much (one goal at most)", "how", "which views count", "flight"
 CAMERA = "camera"
@@ -502,7 +503,7 @@ class PlanParameters:
         option="--coverage",
         metavar="SHARE",
         group=GOAL,
-        unset="0.99",
+        unset="0.99 with views chosen for sections",
         row="first",
         step=0.005,
     )
@@ -530,6 +531,7 @@ class PlanParameters:
         option="--good-enough",
         metavar="DB",
         group=GOAL,
+        unset="0.5, where no goal is set",
         row="first",
         step=0.1,
     )
@@ -591,17 +593,25 @@ class PlanParameters:
 
     @property
     def wanted_share(self) -> float | None:
-        """Share of what can be covered that the plan is to reach, `DEFAULT_SHARE` where greedy is told no goal.
+        """Share of what can be covered that the plan is to reach: `DEFAULT_SHARE` where views are chosen for sections.
 
         None where another goal is set, and where a method that flies a pattern of its own is told none.
         """
-        if self.share is not None:
-            return self.share
-        others = (self.n_views, self.n_batteries, self.least_gain_db)
-        has_goal = any(value is not None for value in others)
-        return None if has_goal or self.method != "greedy" else DEFAULT_SHARE
+        return DEFAULT_SHARE if self._lacks_goal("sections") else self.share
+
+    @property
+    def wanted_gain_db(self) -> float | None:
+        """What another battery has to bring, dB: `DEFAULT_GAIN_DB` where views are chosen for the model's pictures.
+
+        None as for `wanted_share`.
+        """
+        return DEFAULT_GAIN_DB if self._lacks_goal("image-error") else self.least_gain_db
 
     @property
     def is_for_least_error(self) -> bool:
         """Whether views are chosen for the least expected error of the model: not where they are to cover a share."""
-        return self.method == "greedy" and self.greedy.objective == "image-error" and self.wanted_share is None
+        return self.method == "greedy" and self.greedy.objective == "image-error" and self.share is None
+
+    def _lacks_goal(self, objective: Objective) -> bool:
+        goals = (self.n_views, self.share, self.n_batteries, self.least_gain_db)
+        return self.method == "greedy" and self.greedy.objective == objective and all(goal is None for goal in goals)

@@ -5,8 +5,10 @@ Angles stand in degrees here because these records are the file; arrays of radia
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -251,11 +253,14 @@ class FlightWorth:
         With one battery more, whose photos add most; None where none would add anything.
     deviation_db
         Standard deviation of models' PSNR from what is expected.
+    poses_sha256
+        `poses_sha256` of the viewpoints; empty where an earlier version did not tell.
     """
 
     batteries: tuple[BatteryWorth, ...]
     another: BatteryWorth | None
     deviation_db: float
+    poses_sha256: str = ""
 
     def __post_init__(self) -> None:
         if not self.batteries:
@@ -332,14 +337,15 @@ class Plan:
 
     @property
     def present_worth(self) -> FlightWorth | None:
-        """What its photos are expected to bring; None where it is not known, or sorties have changed since."""
+        """What its photos are expected to bring; None where it is not known, or views have changed since."""
         counts, n_photos = [], 0
         for sortie in self.sorties:
             n_photos += len(sortie.viewpoint_ids)
             if sortie.viewpoint_ids:
                 counts.append(n_photos)
-        is_same = self.worth is not None and [battery.n_photos for battery in self.worth.batteries] == counts
-        return self.worth if is_same else None
+        if self.worth is None or [battery.n_photos for battery in self.worth.batteries] != counts:
+            return None
+        return self.worth if self.worth.poses_sha256 in ("", poses_sha256(self.viewpoints)) else None
 
     @property
     def duration_s(self) -> float:
@@ -352,6 +358,12 @@ class Plan:
         if not self.sorties or any(sortie.start_s is None for sortie in self.sorties):
             return None
         return max((sortie.start_s or 0.0) + sortie.duration_s for sortie in self.sorties)
+
+
+def poses_sha256(viewpoints: Sequence[Viewpoint]) -> str:
+    """Checksum of poses, in whatever order."""
+    poses = sorted((*view.position_enu_m, view.heading_deg, view.gimbal_pitch_deg) for view in viewpoints)
+    return hashlib.sha256(np.array(poses, "<f8").tobytes()).hexdigest()
 
 
 class ViewpointArrays(NamedTuple):

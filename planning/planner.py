@@ -317,7 +317,7 @@ def plan_flight(
     choosing = TimeLimit(choosing_s if choosing_s > LEAST_CHOOSING_S else 0.0, also=stop)
     problem = prepared.problem
     judged = cache(partial(image_error_model, problem, site_model, request.greedy.surroundings, request.seed, photos))
-    if request.least_gain_db is not None:
+    if request.wanted_gain_db is not None:
         n_batteries = _batteries_worth(problem, judged()[0], request, chosen_profile, choosing, monitor)
         request = replace(request, n_batteries=n_batteries, least_gain_db=None)
     chosen_for = judged()[0] if request.is_for_least_error and judged()[0].n_elements else None
@@ -504,7 +504,7 @@ def _batteries_worth(
     for n_batteries in range(1, MOST_BATTERIES + 1):
         n_chosen = len(choose_for_least_error(state, n_each, monitor))
         now = expected_psnr_db(error.error_of(state.sums))
-        if before is not None and (n_chosen == 0 or now - before < (request.least_gain_db or 0.0)):
+        if before is not None and (n_chosen == 0 or now - before < (request.wanted_gain_db or 0.0)):
             return n_batteries - 1
         before = now
     return MOST_BATTERIES

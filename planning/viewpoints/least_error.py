@@ -26,7 +26,7 @@ from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, never
 from planning.coverage.image_error import COLUMNS, FLOOR, ROWS, TERMS, ImageErrorModel, Shown, decibels
 from planning.coverage.mirrored_rays import Surroundings
-from planning.plan import BatteryWorth, Camera, FlightWorth, Plan, ViewpointArrays, viewpoint_arrays
+from planning.plan import BatteryWorth, Camera, FlightWorth, Plan, ViewpointArrays, poses_sha256, viewpoint_arrays
 from planning.site.records import SiteModel
 from planning.viewpoints.candidates import spread_candidates
 from planning.viewpoints.cover_kernel import is_too_close
@@ -346,4 +346,4 @@ def flight_worth(problem: ViewProblem, error: ImageErrorModel, plan: Plan, seed:
         minutes = last.minutes + longest.duration_s / 60.0
         another = BatteryWorth(last.n_batteries + 1, minutes, last.n_photos + len(chosen), left)
     deviation_db = DEVIATION_DB if error.near_share >= NEAR_SHARE else FAR_DEVIATION_DB
-    return FlightWorth(tuple(batteries), another, deviation_db)
+    return FlightWorth(tuple(batteries), another, deviation_db, poses_sha256(plan.viewpoints))

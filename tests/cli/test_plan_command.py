@@ -190,6 +190,7 @@ WRONG_VALUES = [
     (["--candidates", 0], "--candidates: expected 1 to 1000000"),
     (["--profile", "kite"], "there is no aircraft profile 'kite'; known are: ardupilot, m30"),
     (["--method", "pso", "--batteries", 2], "'greedy' can"),
+    (["--coverage", 0.5, "--objective", "image-error"], "--objective: a share of what can be covered is planned by"),
     (["--method", "pso", "--coverage", 0.9], "--views N"),
 ]
 

@@ -14,7 +14,7 @@ from planning.aircraft.catalogue import profile
 from planning.base.effects import Decision
 from planning.base.progress import QualityPoint
 from planning.insight.sections import SectionState
-from planning.parameters import Constraints, FlightRules
+from planning.parameters import DEFAULT_GAIN_DB, DEFAULT_SHARE, Constraints, FlightRules, GreedyParameters
 from planning.plan import Viewpoint, usual_gsd_m
 from planning.request import PlanRequest
 
@@ -83,6 +83,20 @@ def test_the_wanted_pixel_is_that_of_camera_and_distance_until_one_is_typed(form
     form.box("constraints.wanted_gsd_mm").box().setValue(0.0)
     assert form.value().constraints.wanted_gsd_mm == 0.0
     assert form.box("constraints.wanted_gsd_mm").box().text() == "any"
+
+
+def test_the_goal_that_is_offered_is_that_of_what_views_are_chosen_for(form):
+    from groundstation.gui.plan.plan_form import COVERAGE, GOOD_ENOUGH
+
+    goal, box = form._goal, form.box("greedy.objective")
+    form.setValue(PlanRequest())
+    assert (goal.currentIndex(), form.value().wanted_gain_db, box.isEnabled()) == (GOOD_ENOUGH, DEFAULT_GAIN_DB, True)
+    form.setValue(PlanRequest(greedy=GreedyParameters(objective="sections")))
+    assert (goal.currentIndex(), form.value().wanted_share) == (COVERAGE, DEFAULT_SHARE)
+    form.setValue(PlanRequest())
+    goal.setCurrentIndex(COVERAGE)
+    assert form.value().share == DEFAULT_SHARE
+    assert not box.isEnabled(), "a share is one of sections"
 
 
 def test_a_request_that_makes_no_sense_is_explained_and_not_announced(form):

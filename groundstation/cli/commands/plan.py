@@ -31,9 +31,10 @@ if TYPE_CHECKING:
     from planning.request import PlanRequest
 
 EPILOG = """how much is wanted (one of):
+  --good-enough DB  batteries until another would make the model's pictures less than so much better (default: 0.5)
   --views N         so many views
-  --coverage SHARE  so much of what can be covered, with as few views as possible (default: 0.99)
   --batteries N     as much as possible within so many sorties
+  --coverage SHARE  so much of what can be covered, by the paper's sections, with as few views as possible
 
 examples:
   plan office.site.json -o office.plan.json
@@ -116,6 +117,11 @@ def request_of(options: argparse.Namespace) -> PlanRequest:
         base = replace(base, n_views=None, share=None, n_batteries=None, least_gain_db=None)
     with in_words_of_options(PlanParameters):
         parameters = with_values(base, typed)
+        if parameters.share is not None and typed.get(("greedy", "objective")) == "image-error":
+            raise InputError.say(
+                "a share of what can be covered is planned by sections; give --good-enough, --batteries or --views",
+                place="--objective",
+            )
         if options.max_gsd is not None:
             constraints = replace(parameters.constraints, max_distance_m=_max_distance_m(parameters, options.max_gsd))
             parameters = replace(parameters, constraints=constraints)

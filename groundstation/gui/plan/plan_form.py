@@ -18,7 +18,15 @@ from groundstation.services.units import UnitSystem, length_unit, sampling_unit
 from planning.aircraft.catalogue import Profile, profile, profiles
 from planning.base.errors import GroundStationError
 from planning.base.parameters import declared, with_values
-from planning.parameters import DEFAULT_SHARE, DEFAULT_VIEWS, CameraSettings, Constraints, PlanParameters
+from planning.parameters import (
+    DEFAULT_GAIN_DB,
+    DEFAULT_SHARE,
+    DEFAULT_VIEWS,
+    CameraSettings,
+    Constraints,
+    Objective,
+    PlanParameters,
+)
 from planning.plan import usual_gsd_m
 from planning.request import PlanRequest
 
@@ -90,8 +98,8 @@ COVERAGE, VIEWS, BATTERIES, GOOD_ENOUGH = range(4)
 GOALS = {COVERAGE: "share", VIEWS: "n_views", BATTERIES: "n_batteries", GOOD_ENOUGH: "least_gain_db"}
 """What each goal is the value of."""
 
-USUAL_GAIN_DB = 0.5
-"""Offered for what another battery has to bring: what eyes begin to see."""
+USUAL = {"share": DEFAULT_SHARE, "n_views": DEFAULT_VIEWS, "n_batteries": 1, "least_gain_db": DEFAULT_GAIN_DB}
+"""Offered for each."""
 
 OWN = ("profile_id", "method", "constraints.wanted_gsd_mm")
 """Parameters whose boxes depend on more than themselves."""
@@ -115,6 +123,11 @@ COARSEST_GSD_M = (0.0001, 0.5)
 
 OFFERED_RANGE = 3.0
 """Where no pixel size is asked for, the one at so many safety distances is offered."""
+
+
+def _usual_goal(objective: Objective) -> int:
+    """What greedy is planned for where it is told no goal."""
+    return COVERAGE if objective == "sections" else GOOD_ENOUGH
 
 
 class PlanForm(QWidget):
@@ -210,11 +223,10 @@ class PlanForm(QWidget):
         wrong = self._show_aircraft(request)
         self._method.setValue(request.method)
         asked = [goal for goal, name in GOALS.items() if getattr(request, name) is not None]
-        self._goal.setCurrentIndex(asked[0] if asked else COVERAGE)
-        usual = {"share": DEFAULT_SHARE, "n_views": DEFAULT_VIEWS, "n_batteries": 1, "least_gain_db": USUAL_GAIN_DB}
+        self._goal.setCurrentIndex(asked[0] if asked else _usual_goal(request.greedy.objective))
         for name, row in self.rows.items():
             value = row.declared.value_in(request)
-            row.setValue(usual.get(name) if value is None else value)
+            row.setValue(USUAL.get(name) if value is None else value)
         self._is_gsd_limited.setChecked(request.constraints.max_distance_m is not None)
         del blockers
         self._say_wrong(wrong)
@@ -271,7 +283,8 @@ class PlanForm(QWidget):
         values = {row.declared.path: row.value() for row in self.rows.values()}
         has_goal = any(getattr(before, name) is not None for name in GOALS.values())
         # What was asked for without a goal is still so while the one that is offered stands.
-        is_offered = goal == COVERAGE and not has_goal and values["share",] == DEFAULT_SHARE
+        is_usual = goal == _usual_goal(values["greedy", "objective"])
+        is_offered = is_usual and not has_goal and values[GOALS[goal],] == USUAL[GOALS[goal]]
         for number, name in GOALS.items():
             if number != goal or is_offered:
                 values[name,] = None
@@ -320,4 +333,5 @@ class PlanForm(QWidget):
         """Only the goal chosen is shown, and only what its limit needs."""
         for goal, name in GOALS.items():
             self._first.setRowVisible(self.box(name), self._goal.currentIndex() == goal)
+        self.box("greedy.objective").setEnabled(self._goal.currentIndex() != COVERAGE)  # a share is one of sections
         self._gsd.setEnabled(self._is_gsd_limited.isChecked())

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QCoreApplication, QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QCoreApplication, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QLabel, QPushButton, QTabWidget, QToolButton, QVBoxLayout, QWidget
 
@@ -39,7 +39,7 @@ from groundstation.services.jobs.runner import Job, JobBounded, JobImproved
 from groundstation.services.mission.camera import CameraReport, report_of_findings, settable
 from groundstation.services.mission.readiness import additional_findings
 from groundstation.services.plan.places import item_of_place
-from groundstation.services.plan.plan_cache import ActivePlan
+from groundstation.services.plan.plan_cache import ActivePlan, worth_of
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.project.steps import Act
 from groundstation.services.units import UnitSystem, distance_unit, length_unit, minutes_text, per_cent, sampling_unit
@@ -354,6 +354,10 @@ def painted_states(insight: PlanInsight) -> NDArray[np.int64]:
     return states
 
 
+UNTOUCHED_MS = 1000
+"""After an edit, before something is measured that takes longer than it: the next edit may come at once."""
+
+
 def vertex_clearances_m(legs_m: NDArray[np.float64]) -> NDArray[np.float64]:
     """The lesser clearance of the legs at each vertex, shape (k,) from (k - 1,): none looks safer than its legs."""
     padded = [float("inf"), *legs_m.tolist(), float("inf")]
@@ -377,6 +381,9 @@ class PlanPage(GradualTab):
         context, shared_view = self._context, self._shared_view
         self._planning_id: int | None = None
         self._camera_of: tuple[object, ...] = ()
+        self._worth: tuple[ActivePlan | None, FlightWorth | None] = (None, None)
+        self._measuring: Job[object] | None = None
+        self._untouched = QTimer(self, singleShot=True, interval=UNTOUCHED_MS)
         self.controller = PlanController(context, self)
         self.form, self.chart = PlanForm(), QualityChart(time.perf_counter)
         yield
@@ -394,7 +401,7 @@ class PlanPage(GradualTab):
         self.worth = LinesPlot(
             self.tr("Minutes in the air"),
             self.tr("Expected PSNR [dB]"),
-            self.tr("What this plan is worth is not known, or it was changed since; plan it again."),
+            self.tr("What this plan is worth is not known."),
         )
         yield
         # Below the shared view there is width, which a bar over a day needs.
@@ -465,6 +472,7 @@ class PlanPage(GradualTab):
     def _connect(self) -> None:
         controller, context = self.controller, self._context
         self.form.valueChanged.connect(controller.set_request)
+        self._untouched.timeout.connect(self._measure_worth)
         self._plan_button.clicked.connect(self._plan)
         self.chart.enough.clicked.connect(controller.stop_here)
         self.effects.settingChanged.connect(self._setting_changed)
@@ -568,7 +576,7 @@ class PlanPage(GradualTab):
         self.panel.set_plan(None if active is None else active.insight, None if active is None else active.plan)
         self.camera.set_report(None if active is None else report_of_findings(active.plan, active.revision.findings))
         self._paint()
-        self.worth.set_lines(() if active is None else self._worth_lines(active.plan.present_worth))
+        self._show_worth(active, None if active is None else active.plan.present_worth)
         if active is None:
             if self._context.document.current is not None:
                 why = self.controller.why_not_active
@@ -598,7 +606,7 @@ class PlanPage(GradualTab):
         coverage, units = plan.coverage, self._context.units
         finest = active.insight.sampling.best_m
         lines = [self.tr("Views: {0}, sorties: {1}").format(len(plan.viewpoints), len(plan.sorties))]
-        worth = plan.present_worth
+        _, worth = self._worth
         if worth is not None:
             lines.append(self.tr("Unseen views of its model: {0}").format(self._context.localized(worth.text)))
         lines += [
@@ -624,6 +632,36 @@ class PlanPage(GradualTab):
         if len(known):
             lines.append(self.tr("GSD from {0}").format(sampling_unit(units).text(float(known.min()))))
         self._result.setText("\n".join(lines))
+
+    def _show_worth(self, active: ActivePlan | None, worth: FlightWorth | None) -> None:
+        """Show what a plan is worth; where it does not say, that is measured once it is left alone for a while."""
+        self._worth = active, worth
+        self.worth.set_lines(self._worth_lines(worth))
+        if self._measuring is not None:
+            self._context.cancel(self._measuring, quietly=True)
+            self._measuring = None
+        self._untouched.stop()
+        if active is not None and worth is None:
+            self._untouched.start()
+
+    def _measure_worth(self) -> None:
+        active, _ = self._worth
+        if active is None or active is not self.controller.active:
+            return
+        if self.controller.is_planning:
+            self._untouched.start()
+            return
+
+        def done(found: FlightWorth | None) -> None:
+            self._measuring = None
+            if active is self.controller.active:
+                self._worth = active, found
+                self.worth.set_lines(self._worth_lines(found))
+                self._show_result(active)
+
+        self._measuring = self._context.start(
+            self.tr("Estimate the model's quality"), lambda _context: worth_of(active), done
+        )
 
     def _worth_lines(self, worth: FlightWorth | None) -> tuple[Line, ...]:
         """Expected quality against minutes in the air, battery by battery, and how wrong it may be."""

@@ -126,8 +126,9 @@ def measured_text(value: float, unit: str, system: UnitSystem) -> str:
 
 Array = NDArray[np.float64]
 
-FAR_BELOW = 0.9
-"""Part of what any flight can cover, below which a plan is spoken of."""
+FAR_BELOW, MUCH_DB = 0.9, 1.0
+"""Part of what any flight can cover, below which a plan is spoken of; and what another battery brings, from which on
+that is a warning: a ninth of the error less."""
 
 NEAR_GLASS_M = 6.0
 """GNSS without RTK is off by up to some 3 m (95 %, horizontal); nearer to glass than twice that, nothing else helps."""
@@ -201,15 +202,23 @@ def _coverage(case: Case) -> Iterator[Finding]:
     bound = case.plan.coverage.reachable_upper_bound
     if case.plan.method == TOP_UP:  # a top-up adds to photos that are there
         return
-    if bound and covered < FAR_BELOW * bound:
+    if not bound or covered >= FAR_BELOW * bound:
+        return
+    seen, worth = (covered, bound, covered / bound), case.plan.present_worth
+    if worth is None:
         text = say(
-            "{} of the {} sections that flights can cover are covered ({:.0%}): plan with more --views, or a "
-            "--coverage",
-            covered,
-            bound,
-            covered / bound,
+            "{} of the {} sections that flights can cover are covered ({:.0%}): plan with more views, or more batteries",
+            *seen,
         )
-        yield Finding(Severity.WARNING, "coverage-far", text, "", 100.0 * covered / bound, 100.0 * FAR_BELOW, "%")
+    else:
+        text = say(
+            "{} of the {} sections that flights can cover are covered ({:.0%}), which says what is seen and not how "
+            "good the model will be: another battery would make its pictures {:.1f} dB better",
+            *seen,
+            worth.gain_db,
+        )
+    severity = Severity.WARNING if worth is None or worth.gain_db >= MUCH_DB else Severity.NOTE
+    yield Finding(severity, "coverage-far", text, "", 100.0 * covered / bound, 100.0 * FAR_BELOW, "%")
 
 
 def _place(case: Case) -> Iterator[Finding]:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.base.effects import EffectSetting
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor
 from planning.checks.case import pose_of
@@ -20,11 +21,13 @@ from planning.coverage.sections import NOT_SEEN
 from planning.insight.reasons import SectionReasons, section_reasons
 from planning.insight.sections import PanelSampling, PlanInsight, assembled, panel_sampling
 from planning.parameters import Constraints
-from planning.plan import Camera, Plan, viewpoint_arrays
+from planning.plan import Camera, FlightWorth, Plan, viewpoint_arrays
 from planning.planner import first_reusable
 from planning.request import PlanRequest
 from planning.revision.edits import Revision, revise
+from planning.revision.top_up import METHOD as TOP_UP
 from planning.site.records import SiteModel
+from planning.viewpoints.least_error import MirroredSurroundings, flight_worth, image_error_model
 from planning.viewpoints.prepare import Prepared, is_same_place, prepare, with_site_limits
 
 MAX_ACTIVE = 40
@@ -127,6 +130,20 @@ def activate(
     monitor.report(say("measuring the plan"), 0, 1)
     revision = revise(plan, prepared_site.prepared)
     return ActivePlan(PreparedSite(prepared_site.prepared, reasons), revision, insight_of(revision, reasons))
+
+
+def worth_of(active: ActivePlan) -> FlightWorth | None:
+    """What the photos of a plan are expected to bring, also of one that was edited, or comes from another program.
+
+    None where that depends on photos that are there already, and as `flight_worth` has it.
+    """
+    prepared, plan = active.prepared_site.prepared, active.plan
+    if plan.method == TOP_UP:
+        return None
+    is_on = next((decision.on for decision in plan.effects if decision.effect == MirroredSurroundings.name), None)
+    setting: EffectSetting = "auto" if is_on is None else "on" if is_on else "off"
+    error, _ = image_error_model(prepared.problem, prepared.site_model, setting, plan.seed)
+    return flight_worth(prepared.problem, error, plan, plan.seed)
 
 
 def insight_of(revision: Revision, reasons: SectionReasons, before: ActivePlan | None = None) -> PlanInsight:

@@ -81,7 +81,9 @@ def test_undo_of_the_first_plan_leaves_nothing_of_it(application, controller, pa
 
 
 @pytest.mark.slow
-def test_what_a_plan_is_worth_stands_beside_it_until_its_sorties_change(application, controller, page_of_new_plan):
+def test_what_a_plan_is_worth_stands_beside_it_and_is_measured_anew_after_an_edit(
+    application, controller, page_of_new_plan
+):
     page, plan = page_of_new_plan, controller.context.document.current.plan
     last = plan.worth.batteries[-1]
     assert f"{last.psnr_db:.1f} dB" in page.verdict()
@@ -90,11 +92,18 @@ def test_what_a_plan_is_worth_stands_beside_it_until_its_sorties_change(applicat
     assert [line.y[0] - last.psnr_db for line in lines[-2:]] == pytest.approx(
         [plan.worth.deviation_db, -plan.worth.deviation_db]
     )
-    (viewpoint,) = first_views(controller)
-    page.controller.delete_viewpoint(viewpoint.id)
-    turn_until_idle(application, controller)
+    away, gone = first_views(controller, 2)
+    page.controller.set_viewpoint(replace(away, heading_deg=away.heading_deg + 180.0))
+    page.controller.delete_viewpoint(gone.id)
     assert page.worth.lines() == ()
     assert "dB" not in page.verdict()
+    turn_until(application, lambda: page.worth.lines() != ())
+    assert page.worth.lines()[0].y[-1] < last.psnr_db
+    assert page.worth.lines()[0].x[-1] == pytest.approx(controller.context.document.current.plan.duration_s / 60.0)
+    assert f"{page.worth.lines()[0].y[-1]:.1f} dB" in page.verdict()
+    for _ in range(2):
+        controller.context.session.undo()
+    assert page.worth.lines()[0].y[-1] == last.psnr_db
 
 
 @pytest.mark.slow

@@ -18,7 +18,7 @@ from planning.base.progress import QUIET
 from planning.coverage.image_error import FAR_M, ImageErrorModel, Term, _looks, decibels
 from planning.coverage.mirrored_rays import MirroredRays, Surroundings, pane_reflectance
 from planning.coverage.sections import panel_frames
-from planning.parameters import Constraints, GreedyParameters
+from planning.parameters import DEFAULT_GAIN_DB, DEFAULT_SHARE, Constraints, GreedyParameters
 from planning.plan import ViewpointArrays, plan_of, plan_to_json
 from planning.planner import plan_flight
 from planning.request import PlanRequest
@@ -403,7 +403,11 @@ def test_a_plan_says_what_it_is_worth_and_a_changed_one_does_not(tmp_path):
     assert worth.gain_db > 0.0
     assert "another battery would bring" in worth.text
     read = plan_of(json.dumps(plan_to_json(planned.plan)).encode(), tmp_path / "plan.json")
-    assert read.worth == worth
+    assert read.present_worth == worth
+    first, *others = read.viewpoints
+    away = replace(first, heading_deg=(first.heading_deg + 180.0) % 360.0)
+    assert replace(read, viewpoints=(away, *others)).present_worth is None
+    assert replace(read, viewpoints=tuple(reversed(read.viewpoints))).present_worth == worth
     sortie = planned.plan.sorties[0]
     fewer = replace(planned.plan, sorties=(replace(sortie, viewpoint_ids=sortie.viewpoint_ids[1:]),))
     assert fewer.present_worth is None
@@ -423,10 +427,20 @@ def test_good_enough_takes_fewer_batteries_the_more_each_has_to_bring():
     request = PlanRequest(greedy=GreedyParameters(n_candidates=300, certify=False), time_budget_s=3.0)
     sorties = [
         len(plan_flight(prepared().site_model, replace(request, least_gain_db=gain), prepared=prepared()).plan.sorties)
-        for gain in (50.0, 0.05)
+        for gain in (50.0, None, 0.05)
     ]
     assert sorties[0] == 1
-    assert sorties[1] >= sorties[0]
+    assert sorties == sorted(sorties)
+
+
+def test_without_a_goal_the_objective_says_when_it_is_enough():
+    model, paper = PlanRequest(), PlanRequest(greedy=GreedyParameters(objective="sections"))
+    assert (model.wanted_gain_db, model.wanted_share, model.is_for_least_error) == (DEFAULT_GAIN_DB, None, True)
+    assert (paper.wanted_gain_db, paper.wanted_share, paper.is_for_least_error) == (None, DEFAULT_SHARE, False)
+    assert PlanRequest(share=0.5).wanted_gain_db is None
+    assert not PlanRequest(share=0.5).is_for_least_error
+    for other in (replace(model, n_views=9), replace(model, n_batteries=1), replace(model, method="orbit")):
+        assert (other.wanted_gain_db, other.wanted_share) == (None, None)
 
 
 @pytest.mark.parametrize("name", ["single-panel", pytest.param("court", marks=pytest.mark.slow)])

@@ -102,6 +102,11 @@ def test_a_plan_far_below_what_can_be_covered_is_told():
     (found,) = of("coverage-far", readiness_findings(Case.of(few, model)))
     assert found.severity is Severity.WARNING
     assert found.value == pytest.approx(100.0 * plan.coverage.covered / (10 * bound), rel=0.05)
+    last = plan.present_worth.batteries[-1]
+    enough = replace(plan.worth, another=replace(last, psnr_db=last.psnr_db + 0.2))
+    (found,) = of("coverage-far", readiness_findings(Case.of(replace(few, worth=enough), model)))
+    assert found.severity is Severity.NOTE
+    assert "0.2 dB better" in found.message
     assert not of("coverage-far", readiness_findings(Case.of(replace(few, method=TOP_UP), model)))
     all_of_it = replace(plan, coverage=replace(plan.coverage, reachable_upper_bound=plan.coverage.covered))
     assert not of("coverage-far", readiness_findings(Case.of(all_of_it, model)))
