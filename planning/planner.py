@@ -364,8 +364,8 @@ def plan_flight(
         _open_sections(problem, plan, counts > 0, request, any_of(stop, limit)),
         n_chosen - n_routed,
         n_routed - len(plan.viewpoints),
-        None if found.least_error is None else expected_psnr_db(found.least_error),
-        expected_psnr_db(error.most_error) if len(photos.heading_rad) else None,
+        None if found.least_error is None else expected_psnr_db(found.least_error, error.near_share),
+        expected_psnr_db(error.most_error, error.near_share) if len(photos.heading_rad) else None,
         found.is_cut_short,
         found.are_all_taken,
     )
@@ -503,7 +503,7 @@ def _batteries_worth(
     before = None
     for n_batteries in range(1, MOST_BATTERIES + 1):
         n_chosen = len(choose_for_least_error(state, n_each, monitor))
-        now = expected_psnr_db(error.error_of(state.sums))
+        now = expected_psnr_db(error.error_of(state.sums), error.near_share)
         if before is not None and (n_chosen == 0 or now - before < (request.wanted_gain_db or 0.0)):
             return n_batteries - 1
         before = now

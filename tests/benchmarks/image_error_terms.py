@@ -27,13 +27,16 @@ from planning.viewpoints.prepare import prepare
 from reconstruction.light.photo_set import read_photo_set
 from reconstruction.scenes.world.bundled import bundled_scene
 from reconstruction.tradeoff.flight_worth import UNSEEN_KINDS
-from tests.benchmarks.flight_worth import FAR, KEPT, NEAR, request_of
+from tests.benchmarks.flight_worth import FAR, KEPT, NEAR, further_request, request_of
 from tests.benchmarks.harness import Benchmark, Context, Row, Skipped
 
 Array = NDArray[np.float64]
 
-LEARNED_FROM = ("planar",)
-"""Scenes whose flights variances are fitted to; the others test them."""
+LEARNED_FROM, FAR_LEARNED_FROM = ("planar",), "planar-far"
+"""Scenes whose flights variances are fitted to, and how much better models are where little near is mirrored; the
+others test them."""
+
+REQUESTS = {scene: request_of(scene) for scene in (*NEAR, *FAR)} | {"curved-far": further_request("far")}
 
 SHARES = (0.00025, 0.0025, 0.025, 0.25)
 SIZES = (
@@ -60,20 +63,21 @@ class Case:
 
 def measure(context: Context) -> Iterator[Row]:
     """Deviations of what is expected by scene, then of a fresh fit, and its terms."""
-    cases = [case for scene in (*NEAR, *FAR) for case in _cases(kept_folder(request_of(scene), KEPT), scene)]
+    kept = {scene: kept_folder(request, KEPT) for scene, request in REQUESTS.items()}
+    cases = [case for scene, folder in kept.items() for case in _cases(folder, scene)]
     if not cases:
         raise Skipped("the benchmark `worth` has kept nothing here; run it first")
-    flights = {scene: list(_flights(kept_folder(request_of(scene), KEPT), scene)) for scene in (*NEAR, *FAR)}
+    flights = {scene: list(_flights(folder, scene)) for scene, folder in kept.items()}
     for scene, found in flights.items():
         if found:
-            measured, expected = (np.array(column) for column in zip(*found, strict=True))
-            off = measured - np.array([expected_psnr_db(error) for error in expected])
-            role = "calibrated on" if scene in LEARNED_FROM else "not calibrated on"
+            off = np.array([measured - expected_psnr_db(error, share) for measured, error, share in found])
+            is_learned = scene in (*LEARNED_FROM, FAR_LEARNED_FROM)
+            role = "calibrated on" if is_learned else "not calibrated on"
             beside = f"{off.mean():+.2f} dB in the mean of {len(off)} flights, {off.std():.2f} dB about that; {role}"
             yield Row(scene, "deviation of the expected PSNR", round(rms(off), 2), "dB", None, beside)
-    learned_flights = [pair for scene in LEARNED_FROM for pair in flights[scene]]
+    learned_flights = [flight for scene in LEARNED_FROM for flight in flights[scene]]
     if len(learned_flights) > 1:
-        measured, expected = (np.array(column) for column in zip(*learned_flights, strict=True))
+        measured, expected, _ = (np.array(column) for column in zip(*learned_flights, strict=True))
         slope, least = np.polyfit([decibels(error) for error in expected], measured, 1)
         yield Row("fresh fit", "PSNR against that of the expected error", f"{least:.1f} + {slope:.3f} x")
     learned = [case for case in cases if case.scene in LEARNED_FROM]
@@ -104,8 +108,9 @@ def rms(values: Array) -> float:
     return float(np.sqrt(np.mean(np.square(values))))
 
 
-def _flights(folder: Path, scene: str) -> Iterator[tuple[float, float]]:
-    """PSNR of each flight's model, the mean over kinds of views, and the error that the planner expects."""
+def _flights(folder: Path, scene: str) -> Iterator[tuple[float, float, float]]:
+    """Of each flight, the PSNR of its model, the mean over kinds of views; the error that the planner expects; and the
+    share of what is mirrored that is near."""
     results = sorted(folder.glob("*/result.json"))
     if not results:
         return
@@ -115,7 +120,8 @@ def _flights(folder: Path, scene: str) -> Iterator[tuple[float, float]]:
     for path in results:
         scores = json.loads(path.read_text("utf-8"))["psnr_db"].get("radiance-grid")
         if scores:
-            yield float(np.mean(list(scores.values()))), model.expected_error(views_of(path.parent / "photos"))
+            expected = model.expected_error(views_of(path.parent / "photos"))
+            yield float(np.mean(list(scores.values()))), expected, model.near_share
 
 
 def _cases(folder: Path, scene: str) -> Iterator[Case]:
