@@ -144,12 +144,23 @@ def _loose_points(scene: KnownScene, hits_enu_m: Array) -> Array:
     points = scene.points_enu_m
     if not len(points) or len(hits_enu_m) < 2:
         return points
-    # Hits lie in a few planes, and most points far off them: with nodes as tight as the hits in them, hundreds of times
-    # more of those are looked into.
+    # Hits lie in a few planes: with nodes as tight as the hits in them, hundreds of times more of those are looked into
+    # from far off. Nor is it looked for further than nearly all hits explain points.
     tree = cKDTree(hits_enu_m, compact_nodes=False, balanced_tree=False)
-    to_next, near = (np.asarray(found) for found in tree.query(points))
-    between = np.asarray(tree.query(hits_enu_m[near], [2])[0])[:, 0]
-    return np.asarray(points[to_next > np.maximum(2.0 * between, SAME_SURFACE_M)])
+    explained_m = np.maximum(2.0 * np.asarray(tree.query(hits_enu_m, [2])[0])[:, 0], SAME_SURFACE_M)
+    usual_m = float(np.quantile(explained_m, USUALLY_EXPLAINED))
+    to_next, near = (
+        np.asarray(found) for found in tree.query(points, distance_upper_bound=np.nextafter(usual_m, np.inf))
+    )
+    is_far = near == len(hits_enu_m)
+    is_loose = is_far | (to_next > explained_m[np.where(is_far, 0, near)])
+    lonely, far = np.flatnonzero(explained_m > usual_m), np.flatnonzero(is_far)
+    if len(lonely) and len(far):
+        to_lonely, which = (np.asarray(found) for found in cKDTree(hits_enu_m[lonely]).query(points[far]))
+        unsure = far[to_lonely <= explained_m[lonely[which]]]
+        to_next, near = (np.asarray(found) for found in tree.query(points[unsure]))
+        is_loose[unsure] = to_next > explained_m[near]
+    return np.asarray(points[is_loose])
 
 
 def _in_sight(points_enu_m: Array, photos: Sequence[PosedPhoto], caster: RayCaster) -> NDArray[np.bool_]:
@@ -198,6 +209,9 @@ def pixel_sizes(
 
 
 Pictures = Callable[[PosedPhoto], NDArray[np.uint8]]
+
+USUALLY_EXPLAINED = 0.999
+"""Share of hits that explain points no further off than where one is looked for first; the others lie alone."""
 
 RAYS_PER_SPLAT = 8
 """That look for surfaces: enough for one to come near every place where a splat belongs."""

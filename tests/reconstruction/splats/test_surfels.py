@@ -1,9 +1,12 @@
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
+from reconstruction.splats.initialise import SAME_SURFACE_M, _loose_points
 from reconstruction.splats.surfels import (
     SPARSEST,
     panel_proximity,
@@ -137,3 +140,20 @@ def test_loose_points_reach_their_neighbours_however_finely_photos_see_them():
     assert found[144] == pytest.approx(SPARSEST * np.median(found[:144]), rel=0.05)  # a mismatch far out stays small
     known = spacings_of(points, 0.7 * finest, 1.5 * finest, np.zeros(145, bool))
     assert known == pytest.approx(0.015)
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(0, 6), st.floats(0.01, 30.0))
+@settings(max_examples=60, deadline=None)
+def test_points_are_loose_that_are_further_from_hits_than_twice_their_spacing(seed, n_lonely, off_m):
+    rng = np.random.default_rng(seed)
+    wall = np.column_stack([rng.random(400) * 20.0, np.zeros(400), rng.random(400) * 10.0])
+    hits = np.concatenate([wall, 40.0 * rng.normal(size=(n_lonely, 3))])
+    near = np.column_stack([rng.random(60) * 20.0, off_m * rng.normal(size=60), rng.random(60) * 10.0])
+    points = np.concatenate([near, 60.0 * rng.normal(size=(60, 3))])
+    apart = np.linalg.norm(hits[:, None] - hits, axis=2)
+    between = np.sort(apart, axis=1)[:, 1]
+    to_hits = np.linalg.norm(points[:, None] - hits, axis=2)
+    nearest = to_hits.argmin(axis=1)
+    is_loose = to_hits.min(axis=1) > np.maximum(2.0 * between[nearest], SAME_SURFACE_M)
+    scene = SimpleNamespace(points_enu_m=points)
+    assert np.array_equal(_loose_points(scene, hits), points[is_loose])
