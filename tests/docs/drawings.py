@@ -1,4 +1,4 @@
-"""The drawings of docs/drawings as SVG: data flow, sections of a hemisphere, the house, phases of a flight, proofs."""
+"""The drawings of docs/drawings as SVG."""
 
 from __future__ import annotations
 
@@ -93,6 +93,7 @@ def drawings(pyproject: Path) -> dict[str, str]:
         "house.svg": house(pyproject),
         "flight-phases.svg": flight_phases(),
         "proof.svg": proof(),
+        "worth.svg": worth(),
     }
 
 
@@ -347,4 +348,51 @@ def proof() -> str:
     drawing.text(250, 212, "corners cut by the autopilot", "middle", colour=RED, size=12)
     drawing.text(30, 428, "green: proved on the files", colour=GREEN, size=12)
     drawing.text(230, 428, "red: not proved", colour=RED, size=12)
+    return drawing.svg()
+
+
+CAMERAS_M = {"A": ((-13.0, 9.0), -9.0), "B": ((7.0, 9.0), 1.0), "C": ((15.0, 9.0), 8.6), "D": ((-4.5, 9.0), -1.5)}
+"""Places of cameras before a facade, and where on it each looks: metres along the facade and before it."""
+
+CELL_M, HOUSE_M = 8.0, 22.0
+"""Side of a cell of the surroundings, and how far before the facade the house across the street stands."""
+
+
+def worth() -> str:
+    """A street from above: which cells of the house opposite photos show mirrored, and which of them tells most."""
+    drawing = Drawing(760, 500, "A facade and the house opposite from above: what further photos show of it")
+    scale, across_px, facade_px = 14.0, 380.0, 90.0
+
+    def place(x_m: float, y_m: float) -> tuple[float, float]:
+        return across_px + scale * x_m, facade_px + scale * y_m
+
+    seen: dict[int, list[str]] = {}
+    for name, ((x_m, y_m), at_m) in CAMERAS_M.items():
+        met_m = at_m + (at_m - x_m) * HOUSE_M / y_m  # the angle of reflection is that of incidence
+        seen.setdefault(math.floor(met_m / CELL_M), []).append(name)
+        colour = ORANGE if name == "D" else BLUE
+        drawing.arrow([place(x_m, y_m), place(at_m, 0.0), place(met_m, HOUSE_M)], colour)
+        drawing.arrow([place(at_m, 0.0), place(at_m + (at_m - x_m) * 3.6 / y_m, -3.6)], GREEN, is_dashed=True)
+        x, y = place(x_m, y_m)
+        drawing.shapes.append(f'<circle cx="{x:g}" cy="{y:g}" r="6" fill="{colour}"/>')
+        drawing.text(x - 20, y + 5, name, is_bold=True, colour=colour)
+    for number in range(-3, 3):
+        corners = [(number, 0), (number + 1, 0), (number + 1, 1), (number, 1)]
+        box = np.array([place(CELL_M * x, HOUSE_M + 0.5 * CELL_M * y) for x, y in corners])
+        names = seen.get(number, [])
+        fill = {0: RED, 1: ORANGE}.get(len(names), GREEN)
+        drawing.polygon(box, fill, INK, 0.25)
+        x, y = box.mean(axis=0)
+        drawing.text(x, y + 5, ", ".join(names) or "unknown", "middle", size=12)
+    for number in range(-6, 6):
+        (x, y), (further, _) = place(4.0 * number + 0.15, 0.0), place(4.0 * number + 3.85, 0.0)
+        drawing.shapes.append(f'<rect x="{x:g}" y="{y - 3:g}" width="{further - x:g}" height="6" fill="{INK}"/>')
+    drawing.text(20, 30, "rooms: what shows through a pane, by pane and direction", colour=GREEN, is_bold=True)
+    drawing.text(480, 310, "D: new to its pane, but shows what A does:", colour=ORANGE, size=12)
+    drawing.text(480, 327, "a section more, and little learned", colour=ORANGE, size=12)
+    drawing.text(20, 485, "cells of the house opposite:", is_bold=True)
+    drawing.text(225, 485, "seen by several photos: known", colour=GREEN)
+    drawing.text(435, 485, "by one", colour=ORANGE)
+    drawing.text(500, 485, "by none: a photo tells most there", colour=RED)
+    drawing.text(20, 120, "panes", size=12)
     return drawing.svg()
