@@ -190,7 +190,7 @@ def run_zones(options: argparse.Namespace) -> int:
     """Add, state and list geo-zones; returns the exit status."""
     from datetime import date
 
-    from groundstation.services.site.zones import file_lines, zone_rows, zones_of_site, zones_summary
+    from groundstation.services.site.zones import OPEN_ZONE, file_lines, zone_rows, zones_of_site, zones_summary
 
     permissions: dict[str, str] = {}
     for text in options.permit:
@@ -219,6 +219,8 @@ def run_zones(options: argparse.Namespace) -> int:
     rows = zone_rows(done.model, at)
     for row in rows:
         kept = say("kept out of") if row.is_kept else say("not kept out of")
+        if row.is_open:
+            kept = OPEN_ZONE
         if row.permitted:
             kept = say("permitted by '{}'", row.permitted)
         away = say("{:.0f} m from the airspace", row.distance_m)

@@ -46,10 +46,19 @@ def limit(
         if not is_stated:
             return FROM_GROUND if is_lower else Limit(None, HeightAbove.SEA_LEVEL, "UNL")
         return EVERYWHERE_BELOW
+    written = f"{value:g} {unit} {reference}".strip()
     if unit_m is None:
-        questions.append(say("a height is in '{}'; expected metres or feet", unit))
+        questions.append(
+            say("the height '{}' does not say whether it is in metres or feet, so every height counts", written)
+        )
     if above is None:
-        questions.append(say("a height is counted from '{}'; expected AGL, AMSL or WGS84", reference))
+        questions.append(
+            say(
+                "the height '{}' does not say whether it is above ground (AGL), sea level (AMSL) or the ellipsoid "
+                "(WGS84), so every height counts",
+                written,
+            )
+        )
     if above is None or unit_m is None:
-        return Limit(None, HeightAbove.UNKNOWN, f"{value:g} {unit} {reference}".strip())
+        return Limit(None, HeightAbove.UNKNOWN, f"{written} ?")
     return Limit(value * unit_m, above, f"{value:g} {unit.strip().lower()} {word}")

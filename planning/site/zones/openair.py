@@ -49,6 +49,9 @@ _LEVEL = re.compile(r"FL\s*(\d+(?:\.\d+)?)(?:\s*(?:AMSL|MSL|STD))?", re.IGNORECA
 _SKIPPED = ("AF", "AG", "AT", "AX", "AI", "SP", "SB", "TO", "TC")
 """Frequencies, labels, pens and terrain: they change no area."""
 
+_OUTLINE = ("AN", "AH", "AL", "DP", "DC", "DA", "DB")
+"""Where such lines stand before any `AC`, that of their airspace is lost."""
+
 
 def recognises(content: bytes) -> bool:
     """Whether a file is OpenAir: a line begins with `AC` and one with `AN`, `AH`, `AL` or a `D` command."""
@@ -107,11 +110,12 @@ def _airspaces(content: bytes, questions: list[str]) -> Iterator[_Airspace]:
             if current is not None:
                 yield current
             current = _Airspace(rest.partition(";")[0].strip().upper())
-        elif command and current is None:
-            if command not in _SKIPPED and not command.startswith("V"):
-                questions.append(say("line '{}' belongs to no airspace", quoted(written)))
-        elif command and current is not None:
+        elif command and (current is not None or command in _OUTLINE):
+            if current is None:
+                current = _Airspace("", questions=[say("line '{}' belongs to no airspace", quoted(written))])
             _take(current, command, rest)
+        elif command and command not in _SKIPPED and not command.startswith("V"):
+            questions.append(say("line '{}' belongs to no airspace", quoted(written)))
     if current is not None:
         yield current
 
