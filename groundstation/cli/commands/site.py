@@ -107,7 +107,12 @@ def _add_terrain(actions: Any) -> None:
     add("--height-unit", choices=("auto", "m", "ft", "us-ft"), default="auto", help="of the heights (default auto)")
     add("--crs", help="coordinate reference system of the files, where they name none or a wrong one")
     add("--resolution", type=number, metavar="M", help="step of the grid (default: half that of the files)")
-    add("--accuracy", type=number, metavar="M", help="kept on top: how far the ground may lie off the files' heights")
+    add(
+        "--accuracy",
+        type=number,
+        metavar="M",
+        help="kept on top: how far the ground may lie off the files' heights (default: by product, else 0.6 or 9 m)",
+    )
     add("--shift", type=_shift, default=0.0, metavar="M|home", help="added to all heights; home: to reach home")
     add("--taller-than", type=number, default=2.0, metavar="M", help="of what is an obstacle (default 2 m)")
     add(
