@@ -120,5 +120,5 @@ def _periods(fields: Fields) -> tuple[Period, ...] | None:
             period = None
         found.append(period)
     if not found:
-        fields.questions.append(say("the file does not say when this applies"))
+        fields.questions.append(say("the file does not say when this applies, so it counts at all times"))
     return None if not found or None in found else tuple(each for each in found if each is not None)

@@ -91,9 +91,9 @@ def outlines(kind: str, coordinates: Any, questions: list[str]) -> list[Outline]
             holes = tuple(each for each in rings[1:] if len(each) > 3) if len(questions) == before else ()
             found.append(Outline(rings[0], holes, 0.0 if len(questions) == before else POINT_WIDTH_M))
         else:
-            questions.append(say("an area has no outline"))
+            questions.append(say("an area has no outline that can be read"))
     if not found and len(questions) == 0:
-        questions.append(say("an area has no outline"))
+        questions.append(say("an area has no outline that can be read"))
     return found
 
 
@@ -117,7 +117,7 @@ def volumes(geometry: Any, asked: Asked, layer: Any = None, nested: int = 0) -> 
             return []
         parts = fields.items("geometries")
         if not parts:
-            places.append(say("an area has no outline"))
+            places.append(say("an area has no outline that can be read"))
         return [volume for part in parts for volume in volumes(part, asked, layer, nested + 1)]
     lower, upper = _layer(layer, asked.questions)
     areas: list[Outline | Circle] = []

@@ -39,14 +39,16 @@ def read(content: bytes, path: Path) -> ZoneSet:
     except HostileXml as error:
         raise InputError.say("the KML file {}; expected areas alone", error, place=path) from error
     except ValueError as error:
-        raise InputError.say("not valid XML ({})", error, place=path) from error
+        raise InputError.say(
+            "not valid XML ({}): it is cut off or damaged; download it again", error, place=path
+        ) from error
     zones = []
     for number, placemark in enumerate(_named(root, "Placemark"), 1):
         name = _text(placemark, "name") or f"{path.stem} {number}"
         asked = Asked([NO_MEANING])
         volumes = [Volume(area) for area in _areas(placemark, asked)]
         if not volumes and not asked.places:
-            asked.places.append(say("an area has no outline"))
+            asked.places.append(say("an area has no outline that can be read"))
         zones.append(
             Zone(
                 id=placemark.get("id") or name,
@@ -85,7 +87,7 @@ def _areas(placemark: Element, asked: Asked) -> Iterator[Outline]:
         holes = [_ring(each, questions) for each in _named(polygon, "innerBoundaryIs")]
         inside |= {id(each) for each in polygon.iter()}
         if len(outer) != 1 or not outer[0]:
-            questions.append(say("an area has no outline"))
+            questions.append(say("an area has no outline that can be read"))
             continue
         is_sure = len(questions) == before
         yield Outline(

@@ -15,7 +15,7 @@ from planning.base.files import check_lines
 from planning.base.messages import say
 from planning.site.zones.arcs import arc_corners
 from planning.site.zones.fields import quoted
-from planning.site.zones.heights import EVERYWHERE_BELOW, FOOT_M, NAUTICAL_MILE_M, REFERENCES
+from planning.site.zones.heights import EVERYWHERE_BELOW, FOOT_M, NAUTICAL_MILE_M, REFERENCES, no_limit, unread_limit
 from planning.site.zones.records import (
     ALWAYS,
     FROM_GROUND,
@@ -225,7 +225,7 @@ def _zone(airspace: _Airspace, unnamed: str) -> Zone:
     if airspace.points:
         volumes.append(Volume(Outline(tuple(airspace.points), tolerance_m=airspace.tolerance_m), lower, upper))
     if not volumes:
-        places.append(say("an area has no outline"))
+        places.append(say("an area has no outline that can be read"))
     name = airspace.name or unnamed
     return Zone(
         id=name,
@@ -241,8 +241,7 @@ def _zone(airspace: _Airspace, unnamed: str) -> Zone:
 
 def _limit(text: str | None, questions: list[str], *, is_lower: bool) -> Limit:
     if text is None:
-        questions.append(say("the file gives no lower limit") if is_lower else say("the file gives no upper limit"))
-        return EVERYWHERE_BELOW
+        return no_limit(questions, is_lower=is_lower)
     word = text.upper().strip()
     if word in ("GND", "SFC", "0"):
         return FROM_GROUND
@@ -253,9 +252,14 @@ def _limit(text: str | None, questions: list[str], *, is_lower: bool) -> Limit:
     found = _HEIGHT.fullmatch(word)
     if found is None or found[3] is None:
         if found is None:
-            questions.append(say("the height '{}' cannot be read", quoted(text)))
+            unread_limit(quoted(text), questions)
         else:
-            questions.append(say("the height '{}' does not say whether it is above ground or sea", quoted(text)))
+            questions.append(
+                say(
+                    "the height '{}' does not say whether it is above ground or sea, so every height counts",
+                    quoted(text),
+                )
+            )
         return replace(EVERYWHERE_BELOW, written=f"{quoted(text)} ?")
     above = HeightAbove.SEA_LEVEL if found[3] == "ALT" else REFERENCES[found[3]]
     return Limit(float(found[1]) * (1.0 if found[2] == "M" else FOOT_M), above, text)
