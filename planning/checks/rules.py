@@ -23,7 +23,8 @@ from planning.routing.at_once import nearest_at_once_m, sortie_leg_times
 from planning.routing.rally import RETURN_TOLERANCE_M, rally_findings, return_height
 from planning.site.file import is_planned_on
 from planning.site.ground import decide_terrain, terrain_text
-from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M
+from planning.site.records import MIN_HEIGHT_ABOVE_GROUND_M, SiteModel, panel_corners
+from planning.site.terrain import Terrain, surfaces
 
 # Rules about where the aircraft is: airspace, distances, no-fly volumes, altitude, leg lengths.
 
@@ -106,14 +107,65 @@ def ground_unknown(n_legs: int, place: str) -> Finding:
 
 
 def terrain_in_use(case: Case) -> Iterator[Finding]:
-    """Whether heights count from terrain, and why; nothing to say where a site has none."""
+    """Whether heights count from terrain, and why, and whether it fits the site; nothing to say where it has none."""
     terrain = case.site_model.site.terrain
     if terrain is None:
         return
     decision = decide_terrain(case.site_model.site)
+    if decision.on:
+        yield from _terrain_apart(case.site_model, terrain)
     is_ignored = not decision.on and decision.size > decision.tolerance
     severity = Severity.WARNING if is_ignored else Severity.OK
     yield Finding(severity, "terrain", terrain_text(decision), "", decision.size, decision.tolerance, "m")
+
+
+def terrain_unknown(model: SiteModel) -> Iterator[Finding]:
+    """That nobody gave terrain, so that the ground counts as level."""
+    if model.site.terrain is None:
+        text = say(
+            "no terrain was given, so the ground counts as level at {:g} m all around: where it rises, flights are "
+            "lower above it than it says here; attach its heights ('site terrain', or Terrain... in the Site tab)",
+            model.site.airspace.ground_z_m,
+        )
+        yield Finding(Severity.NOTE, "terrain", text)
+
+
+def _terrain_apart(model: SiteModel, terrain: Terrain) -> Iterator[Finding]:
+    """Where the terrain does not fit home or the building's foot, by more than its accuracy and `APART_M`.
+
+    The building may stand in a slope, from its lowest ground to its highest; home may stand on it.
+    """
+    ground, limit_m = surfaces(terrain).ground, terrain.accuracy_m + APART_M
+    home = np.array([model.site.home_enu_m])
+    off_m = float((home[:, 2] - ground.heights_m(home))[0])
+    solids, foot = model.building.vertices_enu_m, panel_corners(model.site).reshape(-1, 3)
+    points = solids if len(solids) else foot
+    over = len(points) > 0 and bool(((home[0] >= points.min(axis=0)) & (home[0] <= points.max(axis=0)))[:2].all())
+    advice = say("one of them is wrong: attach the right terrain, or bring it to home ('--shift home')")
+    if abs(off_m) > limit_m and not (over and off_m > 0.0):
+        text = say(
+            "home lies {:+.1f} m off the terrain, which is good to {:g} m; {}", off_m, terrain.accuracy_m, advice
+        )
+        yield Finding(Severity.WARNING, "terrain-apart", text, "home", abs(off_m), limit_m, "m")
+    below = ground.heights_m(solids) if len(solids) else np.array([])
+    known = below[np.isfinite(below)]
+    if not len(known):
+        return
+    foot_m = float(solids[:, 2].min())
+    # Above all of the ground it hangs in the air; all of the ground above it, it is buried.
+    off_m = max(foot_m - float(known.max()), 0.0) - max(float(known.min()) - foot_m, 0.0)
+    if abs(off_m) > limit_m:
+        text = say(
+            "the foot of the building lies {:+.1f} m off the terrain, which is good to {:g} m; {}",
+            off_m,
+            terrain.accuracy_m,
+            advice,
+        )
+        yield Finding(Severity.WARNING, "terrain-apart", text, "building", abs(off_m), limit_m, "m")
+
+
+APART_M = 2.0
+"""Worth a word if terrain and site differ by more, beyond the accuracy: foundations, slopes in front of a door."""
 
 
 def low_flight_allowed(limit_m: float) -> Finding:

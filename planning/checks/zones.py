@@ -6,8 +6,9 @@ What is not known is a finding of its own. A zone counts as clear only where its
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime, timedelta
+from typing import Any
 
 import numpy as np
 
@@ -18,8 +19,8 @@ from planning.geo.mesh import join
 from planning.geo.solids import Solids
 from planning.site.records import SiteModel
 from planning.site.zones.keep_out import KnownFile, NearZone, known_files, near_zones
-from planning.site.zones.local import COUNTRY_M, REACH_M, LocalZone, prisms
-from planning.site.zones.records import RESTRICTIONS, HeightAbove, Restriction
+from planning.site.zones.local import COUNTRY_M, REACH_M, LocalVolume, LocalZone, prisms
+from planning.site.zones.records import RESTRICTIONS, HeightAbove, Restriction, Zone
 from planning.site.zones.times import State
 
 NEAR_MISS_M = 30.0
@@ -109,66 +110,110 @@ def zone_text(near: NearZone) -> str:
     return glue(f"{zone.name}: ", RESTRICTIONS[zone.restriction], reasons, f", {', '.join(heights)}" if heights else "")
 
 
+def open_zone(near: NearZone, open_places: Sequence[str]) -> str:
+    """What is open about the place of a zone, from which file, and what to do about it."""
+    return say(
+        "{}: where it lies cannot be read for sure in '{}': {}. So nobody can say that flights stay out of it. Look it "
+        "up, or ask {}; then add the corrected file, or state who answered what (--permit)",
+        zone_text(near),
+        near.source.file,
+        joined("; ", open_places),
+        _authority(near.local.zone),
+    )
+
+
+def _authority(zone: Zone) -> str:
+    return next((each.name for each in zone.authorities if each.name), say("its authority"))
+
+
 def _zone(near: NearZone, case: Case) -> Iterator[Finding]:
     zone, local = near.local.zone, near.local
-    what = zone_text(near)
-    place_questions = (*zone.place_questions, *(local.questions if not zone.volumes else ()))
-    if place_questions and not near.permitted:
-        text = say(
-            "{}: where it lies is not sure, so it is not clear: {}; ask, and state the answer (--permit)",
-            what,
-            joined("; ", place_questions),
-        )
-        yield Finding(Severity.WARNING, "zone-question", text, zone.id)
-    if not local.volumes:
-        return
+    what, open_places = zone_text(near), _open_places(near, case)
+    away_m, place = path_distance_m(local, case)
     if zone.restriction is Restriction.NONE:
         yield Finding(Severity.NOTE, "zone", say("{}: it restricts nothing", what), zone.id)
     elif near.state is State.NOT_THEN:
         yield Finding(Severity.NOTE, "zone", say("{}: it does not apply at the planned time", what), zone.id)
+    elif near.permitted and away_m > ROUNDING_M and (local.open_places or not local.volumes):
+        text = say("{}: where it lies is not sure; answered by '{}'", what, near.permitted)
+        yield Finding(Severity.NOTE, "zone", text, zone.id)
+    elif open_places and away_m > ROUNDING_M:
+        yield Finding(Severity.ERROR, "zone-question", open_zone(near, open_places), zone.id)
+    elif local.volumes:
+        yield _distance(near, case, what, away_m, place, open_places)
     else:
-        yield _distance(near, case, what)
+        text = say(
+            "{}: it lies some {:.0f} m away, but how far it reaches is not known: {}; look it up",
+            what,
+            local.distance_m,
+            joined("; ", zone.width_questions),
+        )
+        yield Finding(Severity.WARNING, "zone-question", text, zone.id)
 
 
-def _distance(near: NearZone, case: Case, what: str) -> Finding:
+def _open_places(near: NearZone, case: Case) -> tuple[str, ...]:
+    """`NearZone.open_places`, and outlines that cross themselves where the path lies within their hull."""
+    if near.is_kept and near.local.doubtful is not None and any(map(near.local.doubtful.intersects, _tracks(case))):
+        return (*near.open_places, *near.local.questions)
+    return near.open_places
+
+
+def _tracks(case: Case) -> list[Any]:
+    """Paths from above, shapely; the viewpoints where there is no path."""
+    import shapely
+
+    if not case.plan.sorties:
+        return [shapely.Point(viewpoint.position_enu_m[:2]) for viewpoint in case.plan.viewpoints]
+    return [shapely.LineString(path[:, :2]) for _, _, path in case.sorties()]
+
+
+def _distance(near: NearZone, case: Case, what: str, away_m: float, place: str, open_places: Sequence[str]) -> Finding:
     """How far the path stays away from a zone that applies, or may."""
     zone, local = near.local.zone, near.local
-    away_m, place = path_distance_m(local, case)
     where = glue(zone.id, ", ", place) if place and away_m <= 0.0 else zone.id
-    questions = [*zone.questions, *local.questions]
+    questions = [*zone.questions, *dict.fromkeys((*open_places, *local.questions))]
     if near.state is State.UNDECIDED:
         questions.append(
             say("when it applies cannot be read")
             if zone.periods is None or case.site_model.zones_at is not None
             else say("it applies at some times only, and no time is planned (--at)")
         )
+    if math.isinf(away_m):
+        text = say("{}: there is no path yet, so how near it comes is not known", what)
+        return Finding(Severity.NOTE, "zone", text, where)
     if away_m > ROUNDING_M:
-        severity = Severity.NOTE if away_m < NEAR_MISS_M else Severity.OK
+        below, crossed = _crossed(local, case)
+        severity = Severity.NOTE if away_m < NEAR_MISS_M or below else Severity.OK
         text = say("{}: the path stays out of it, {:.1f} m away", what, away_m)
-        if counted := _counted_from(local, case):
+        if below:
+            text = glue(text, "; ", say("all of it lies below the ground here: is its upper limit right?"))
+        if counted := _counted_from(crossed, case):
             text = glue(text, "; ", counted)
         return Finding(severity, "zone", text, where, away_m, 0.0, "m")
     if near.permitted:
         text = say("{}: the path runs inside, by the authorisation '{}'", what, near.permitted)
         return Finding(Severity.NOTE, "zone", text, where, away_m, 0.0, "m")
-    advice = say(
-        "plan again, or ask {} and state the authorisation (--permit)",
-        next((authority.name for authority in zone.authorities if authority.name), say("its authority")),
-    )
     text = say("{}: the path enters it", what)
     for question in questions:
         text = glue(text, "; ", question)
+    advice = say("plan again, or ask {} and state the authorisation (--permit)", _authority(zone))
     return Finding(Severity.ERROR, "zone", glue(text, "; ", advice), where, away_m, 0.0, "m")
 
 
 def path_distance_m(local: LocalZone, case: Case) -> tuple[float, str]:
     """Least distance between a flight's paths and a zone, 0 inside or where they meet; and where that is.
 
-    Without a path the viewpoints count.
+    Without a path the viewpoints count; infinite without any, and where nobody knows of any place of the zone. Zones
+    more than `REACH_M` above or below the airspace are away by height.
     """
     volumes = prisms(local, case.site_model.site.airspace)
     best_m, where = np.inf, ""
     if not volumes:
+        points = [path for _, _, path in case.sorties()] or [np.array([v.position_enu_m for v in case.plan.viewpoints])]
+        heights_m = np.concatenate([each.reshape(-1, 3)[:, 2] for each in points])
+        for each in local.volumes if len(heights_m) else ():
+            gap_m = max(each.floor_m - float(heights_m.max()), float(heights_m.min()) - each.ceiling_m, 0.0)
+            best_m = min(best_m, gap_m)
         return best_m, where
     solids = Solids.of(join([volume.prism() for volume in volumes]).corners_enu_m)
     for place, _, path in case.sorties():
@@ -185,16 +230,18 @@ def path_distance_m(local: LocalZone, case: Case) -> tuple[float, str]:
     return best_m, where
 
 
-def _counted_from(local: LocalZone, case: Case) -> str:
-    """What the heights are counted from, where the path is clear of a zone by its height alone; else empty."""
-    import shapely
+def _crossed(local: LocalZone, case: Case) -> tuple[bool, list[LocalVolume]]:
+    """Volumes above or below the path, and whether all of these end below the ground that is known there."""
+    tracks, site = _tracks(case), case.site_model.site
+    crossed = [each for each in local.volumes if any(each.area.intersects(track) for track in tracks)]
+    lowest_m = case.space.ground.range_m(np.array(site.airspace.min_enu_m), np.array(site.airspace.max_enu_m))[0]
+    return bool(crossed) and all(each.ceiling_m < lowest_m for each in crossed), crossed
 
-    tracks = [shapely.LineString(path[:, :2]) for _, _, path in case.sorties()]
-    above: set[HeightAbove] = set()
-    for each in local.volumes:
-        if any(each.area.intersects(track) for track in tracks):
-            limits = (each.volume.lower, each.volume.upper)
-            above |= {limit.above for limit in limits if limit.value_m}
+
+def _counted_from(crossed: Sequence[LocalVolume], case: Case) -> str:
+    """What the heights of volumes are counted from that the path is clear of by its height alone; else empty."""
+    limits = [limit for each in crossed for limit in (each.volume.lower, each.volume.upper)]
+    above = {limit.above for limit in limits if limit.value_m}
     words = []
     if HeightAbove.GROUND in above and case.space.ground.terrain is None:
         level_m = case.site_model.site.airspace.ground_z_m

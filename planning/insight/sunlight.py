@@ -217,7 +217,9 @@ class CastShadows:
         at, when = np.nonzero(is_facing)
         n_hidden = np.count_nonzero(~scene.sees_sun(scene.points[some][at], suns[when]))
         minutes = float(n_hidden) * PROBE_S / 60.0 / len(some)
-        return Assessment(minutes, say("bodies of the site take so much sun from a pane on this day"), cost_s)
+        return Assessment(
+            minutes, say("shade of the building and obstacles on a pane on this day, in the mean"), cost_s
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -91,7 +91,9 @@ def _sites(context: Context, root: Path) -> Iterator[tuple[str, Path]]:
         return
     (root / "hill").mkdir()
     model = read_site(write_scene("office", root / "hill"))
-    wanted = TerrainRequest((write_hill(root),), options=HeightOptions(vertical="ellipsoid"), step_m=1.0)
+    wanted = TerrainRequest(
+        (write_hill(root),), options=HeightOptions(vertical="ellipsoid"), step_m=1.0, accuracy_m=0.0
+    )
     write_site(root / "hill" / SITE, attach_terrain(model, wanted, "hill").model.site)
     yield "office on a hill", root / "hill" / SITE
     for house in (*HOUSES, *map(CITY.format, CITY_HOUSES)):

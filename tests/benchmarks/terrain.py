@@ -84,7 +84,7 @@ def _grids(path: Path, steps_m: tuple[float, ...]) -> Iterator[Row]:
 
 
 def _plans(path: Path, budget_s: float) -> Iterator[Row]:
-    wanted = TerrainRequest((path,), options=HeightOptions(vertical="ellipsoid"), step_m=1.0)
+    wanted = TerrainRequest((path,), options=HeightOptions(vertical="ellipsoid"), step_m=1.0, accuracy_m=0.0)
     hill = attach_terrain(office(), wanted, "hill").model
     assert hill.site.terrain is not None
     off = replace(hill, site=replace(hill.site, terrain=replace(hill.site.terrain, use="off")))

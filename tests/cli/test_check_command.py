@@ -29,7 +29,7 @@ def test_json_lists_all_findings_with_values(reflight, pane):
     assert {finding["severity"] for finding in done.json["findings"]} == {"ok", "note", "warning"}
     assert done.json["readiness"] == "with-warnings"
     assert {finding["code"] for finding in done.json["findings"] if finding["severity"] == "note"} == {
-        *("sun", "cold", "glass-sensing", "zones")
+        *("sun", "cold", "glass-sensing", "zones", "terrain")
     }
 
 

@@ -156,7 +156,7 @@ def test_terrain_is_attached_and_told_and_taken_off_again(reflight, heights, tmp
     assert f"{out}: site 'office'\n" in done.out
     assert "terrain from -5.5 m to 12.5 m in the site's own frame, known on 100.0 % of the area" in done.out
     assert (
-        "count from the terrain: the terrain below the airspace departs from its level ground by up to 9.5" in done.out
+        "count from the terrain: the terrain below the airspace departs from its level ground by up to 10.1" in done.out
     )
     assert "obstacles from the surface: " in done.out
     assert sorted(path.name for path in tmp_path.iterdir()) == ["hill.site.json", "hill.surface.ply", "office.ply"]

@@ -6,7 +6,15 @@ import shutil
 import pytest
 
 from planning.site.bundled import ORIGIN
-from tests.planning.site.zones.zone_files import ed269, ed269_feature, ed269_volume, polygon, square
+from tests.planning.site.zones.zone_files import (
+    ed269,
+    ed269_feature,
+    ed269_volume,
+    openair,
+    openair_ring,
+    polygon,
+    square,
+)
 
 
 @pytest.fixture
@@ -48,6 +56,24 @@ def test_zones_are_added_listed_checked_and_permitted(reflight, place):
     assert json.loads(site.read_text())["zones"][0]["permitted"] == {"Z1": "4711"}
     assert reflight("site", "zones", site, "--remove", "zones.json").out.startswith("no geo-zones are known here")
     assert "zones" not in json.loads(site.read_text())
+
+
+def test_a_zone_with_an_unreadable_corner_is_an_open_question_until_it_is_answered(reflight, place):
+    site, plan = place / "site.json", place / "plan.json"
+    lines = openair_ring(square(0.0, -500.0, 20.0, ORIGIN))
+    (place / "zones.txt").write_bytes(openair(*lines[:2], "DP 22:2x:00 N 114:15:00 E", *lines[3:]))
+    listed = reflight("site", "zones", site, place / "zones.txt")
+    assert "where it lies is an open question: no flight is ready until it is answered (--permit)" in listed.out
+    assert "question: line 'DP 22:2x:00 N 114:15:00 E' cannot be read" in listed.out
+    done = reflight("check", plan, site)
+    assert done.status == 1
+    assert done.out.splitlines()[-1] == "not ready to fly: see the errors above"
+    (told,) = (line for line in done.out.splitlines() if "School" in line)
+    assert "where it lies cannot be read for sure in 'zones.txt': line 'DP 22:2x" in told
+    assert reflight("site", "zones", site, "--permit", "School=Town, by phone, 30 November").status == 0
+    answered = reflight("check", plan, site)
+    assert answered.status == 0
+    assert "answered by 'Town, by phone, 30 November'" in answered.out
 
 
 @pytest.mark.parametrize(

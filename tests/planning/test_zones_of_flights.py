@@ -18,14 +18,17 @@ from planning.planner import plan_flight
 from planning.request import PlanRequest
 from planning.site.file import is_planned_on, read_site, site_sha256, write_site
 from planning.site.free_space import free_space, unchecked_space
-from planning.site.zones.keep_out import at_time, no_fly_volumes
+from planning.site.zones.keep_out import at_time, near_zones, no_fly_volumes
 from tests.planning.site.zones.zone_files import (
+    aixm,
+    aixm_ring,
     ed269,
     ed269_feature,
     ed269_volume,
     ed318,
     geojson,
     kml,
+    lon_lat,
     openair,
     openair_ring,
     polygon,
@@ -131,8 +134,87 @@ def test_a_permission_opens_its_own_zone_and_names_its_reference():
 
 def test_a_zone_of_which_the_place_is_open_is_never_clear_unless_the_pilot_has_the_answer():
     lost = ed269(ed269_feature(ed269_volume({"type": "Ellipse"})))
-    assert one(zone_findings(lost), "zone-question").severity is Severity.WARNING
-    assert not [f for f in zone_findings(lost, Z1="asked by phone") if f.code == "zone-question"]
+    question = one(zone_findings(lost), "zone-question")
+    assert question.severity is Severity.ERROR
+    for words in ("School", "'zones.json'", "'type' cannot be read: it is 'Ellipse'", "ask Town", "--permit"):
+        assert words in question.message
+    answered = zone_findings(lost, Z1="asked by phone")
+    assert not [f for f in answered if f.code == "zone-question"]
+    assert (one(answered).severity, "'asked by phone'" in one(answered).message) == (Severity.NOTE, True)
+
+
+AWAY = square(0.0, -400.0, 10.0)
+"""Well away from the path: only the lost corner may reach it."""
+
+
+def spoilt():
+    """Zones beside the path, each with one corner, outline or element lost, by name."""
+    lines = openair_ring(AWAY)
+    yield "openair-corner", openair(*lines[:2], "DP 47:0x:00 N 008:00:00 E", *lines[3:])
+    far = openair(*openair_ring(square(0.0, -4000.0, 10.0)))
+    yield "openair-type", openair(*lines).replace(b"AC P\n", b"") + far
+    yield "geojson", geojson(polygon([*AWAY[:2], [8.0, "47.0"], *AWAY[3:]]))
+    yield "ed318", ed318(polygon([*AWAY[:2], [8.0, 97.0], *AWAY[3:]]))
+    yield "ed269", ed269(ed269_feature(ed269_volume(polygon([*AWAY[:2], [None, 47.0], *AWAY[3:]]))))
+    yield "ed269-two-corners", ed269(ed269_feature(ed269_volume(polygon(AWAY[:2]))))
+    yield "kml", kml(AWAY).replace(kml(AWAY).split(b"coordinates>")[1].split()[2], b"8,?")
+    overlay = b"<GroundOverlay><name>Map</name></GroundOverlay>"
+    yield "kml-overlay", kml(square(0.0, -4000.0, 10.0)).replace(b"</Document>", overlay + b"</Document>")
+    yield (
+        "kml-point",
+        kml(AWAY)
+        .replace(b"<Polygon><outerBoundaryIs><LinearRing>", b"<LineString>")
+        .replace(b"</LinearRing></outerBoundaryIs></Polygon>", b"</LineString>"),
+    )
+    yield "aixm", aixm(aixm_ring(AWAY)).replace(b"GeodesicString>", b"ArcString>")
+
+
+@pytest.mark.parametrize("name", [name for name, _ in spoilt()])
+def test_a_zone_of_which_a_corner_is_lost_is_an_open_question_however_far_the_others_are(name):
+    content = dict(spoilt())[name]
+    question = one(zone_findings(content), "zone-question")
+    assert question.severity is Severity.ERROR
+    assert "'zones.json'" in question.message
+    assert all(f.severity is not Severity.OK for f in zone_findings(content) if f.code == "zone")
+    (near,) = (near for near in near_zones(with_zones(content)) if near.open_places)
+    answered = zone_findings(content, **{near.local.zone.id: "M. Muster, 28 November"})
+    assert [f.severity for f in answered if f.code in ("zone", "zone-question")] == [Severity.NOTE]
+
+
+def test_corners_in_the_wrong_order_are_asked_about_where_the_path_may_lie_between_them():
+    a, b, c, d, _ = square(0.0, 0.0, 90.0)
+    crossed = geojson(polygon([a, c, b, d, a]))
+    findings = zone_findings(crossed)
+    assert {f.severity for f in findings if f.code in ("zone", "zone-question")} == {Severity.ERROR}
+    a, b, c, d, _ = square(0.0, -400.0, 10.0)
+    assert one(zone_findings(geojson(polygon([a, c, b, d, a])))).severity is Severity.OK
+
+
+@pytest.mark.parametrize("upper", ["GND", "0", "-400ft AGL"])
+def test_heights_that_leave_no_room_count_as_every_height(upper):
+    found = one(zone_findings(openair(*openair_ring(square(0.0, 0.0, 90.0)), upper=upper)))
+    assert found.severity is Severity.ERROR
+    assert "every height counts" in found.message
+
+
+def test_a_zone_that_ends_below_the_ground_asks_for_its_upper_limit():
+    found = one(zone_findings(openair(*openair_ring(square(0.0, 0.0, 90.0)), upper="12ft AMSL")))
+    assert found.severity is Severity.NOTE
+    assert "upper limit" in found.message
+
+
+def test_a_zone_far_above_is_away_by_its_height_in_metres():
+    top = max(point[2] for point in flight().sorties[0].path_enu_m)
+    found = one(zone_findings(around(-90, -90, 90, 90, lower=top + 4000.0, upper=9000)))
+    assert (found.severity, found.value) == (Severity.OK, pytest.approx(4000.0, abs=1e-3))
+
+
+def test_points_and_lines_some_kilometres_away_are_a_warning_that_names_the_distance():
+    content = geojson({"type": "Point", "coordinates": lon_lat([(0.0, -5000.0)])[0]})
+    question = one(zone_findings(content), "zone-question")
+    assert question.severity is Severity.WARNING
+    assert "inf" not in question.message
+    assert not [f for f in zone_findings(content, School="a label") if f.code == "zone-question"]
 
 
 def test_files_that_changed_or_are_missing_ground_the_flight(tmp_path):

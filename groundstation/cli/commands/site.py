@@ -107,7 +107,12 @@ def _add_terrain(actions: Any) -> None:
     add("--height-unit", choices=("auto", "m", "ft", "us-ft"), default="auto", help="of the heights (default auto)")
     add("--crs", help="coordinate reference system of the files, where they name none or a wrong one")
     add("--resolution", type=number, metavar="M", help="step of the grid (default: half that of the files)")
-    add("--accuracy", type=number, metavar="M", help="kept on top: how far the ground may lie off the files' heights")
+    add(
+        "--accuracy",
+        type=number,
+        metavar="M",
+        help="kept on top: how far the ground may lie off the files' heights (default: by product, else 0.6 or 9 m)",
+    )
     add("--shift", type=_shift, default=0.0, metavar="M|home", help="added to all heights; home: to reach home")
     add("--taller-than", type=number, default=2.0, metavar="M", help="of what is an obstacle (default 2 m)")
     add(
@@ -190,7 +195,7 @@ def run_zones(options: argparse.Namespace) -> int:
     """Add, state and list geo-zones; returns the exit status."""
     from datetime import date
 
-    from groundstation.services.site.zones import file_lines, zone_rows, zones_of_site, zones_summary
+    from groundstation.services.site.zones import OPEN_ZONE, file_lines, zone_rows, zones_of_site, zones_summary
 
     permissions: dict[str, str] = {}
     for text in options.permit:
@@ -219,6 +224,8 @@ def run_zones(options: argparse.Namespace) -> int:
     rows = zone_rows(done.model, at)
     for row in rows:
         kept = say("kept out of") if row.is_kept else say("not kept out of")
+        if row.is_open:
+            kept = OPEN_ZONE
         if row.permitted:
             kept = say("permitted by '{}'", row.permitted)
         away = say("{:.0f} m from the airspace", row.distance_m)

@@ -383,7 +383,11 @@ def _geotiff(path: Path) -> OverlayPicture:
                 rgba = _rgba(warped, source, height, width)
                 left, bottom, right, top = warped.bounds
     except (RasterioError, ValueError, MemoryError) as error:
-        raise InputError.say("not a GeoTIFF that can be shown ({}); export it again", error, place=path) from error
+        raise InputError.say(
+            "not a GeoTIFF that can be shown: it is cut off, damaged or of a kind that is not known here; copy or "
+            "export it again",
+            place=path,
+        ) from error
     return OverlayPicture(
         rgba, (left / WORLD_M + 0.5, 0.5 - top / WORLD_M), (right / WORLD_M + 0.5, 0.5 - bottom / WORLD_M)
     )

@@ -27,6 +27,7 @@ from planning.base.messages import Message, first_few, glue, say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
 from planning.checks import check_case
 from planning.checks.case import Case, pose_of
+from planning.checks.rules import terrain_unknown
 from planning.checks.zones import source_ages
 from planning.geo.sun import is_within, sun_place_deg
 from planning.insight.sun_times import PAUSE_S, flown_from
@@ -189,6 +190,7 @@ def readiness_findings(
         *_light(case, day.at),
         *_cold(case, day.temperature_c),
         *source_ages(case.site_model, day.at or datetime.now(UTC)),
+        *terrain_unknown(case.site_model),
     )
 
 

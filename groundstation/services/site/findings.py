@@ -13,7 +13,7 @@ from planning.base.errors import InfeasibleError
 from planning.base.findings import Finding, Severity
 from planning.base.messages import say, without_place
 from planning.base.progress import QUIET, Monitor
-from planning.checks.zones import source_ages, source_text
+from planning.checks.zones import open_zone, source_ages, source_text
 from planning.coverage.sections import PanelFrames, panel_frames
 from planning.geo.bvh import OCCLUSION_OFFSET_M
 from planning.parameters import Constraints
@@ -21,7 +21,7 @@ from planning.routing.rally import rally_findings
 from planning.site.free_space import FreeSpace, free_space, unchecked_space
 from planning.site.ground import height_at
 from planning.site.records import NoFlyZone, SiteModel, panel_corners
-from planning.site.zones.keep_out import known_files
+from planning.site.zones.keep_out import known_files, near_zones
 
 AWAY_M = (0.01, 0.5, 2.0, 5.0)
 """Beyond the distance to be kept; the farther ones because frames and ledges stand out in front of panels."""
@@ -59,11 +59,15 @@ def site_findings(
 
 
 def _zones(model: SiteModel) -> Iterator[Finding]:
-    """Files of geo-zones that cannot be used, or are too old."""
+    """Files of geo-zones that cannot be used, or are too old, and zones of which nobody knows where they lie."""
     for known in known_files(model):
         if known.content is None:
             text = say("no zone of {} counts as clear: {}", source_text(known), known.problem)
             yield Finding(Severity.ERROR, "zones-file", text, f"zone-file/{known.source.file}")
+    for near in near_zones(model):
+        if near.open_places:
+            place = f"geo-zone/{near.key}"
+            yield Finding(Severity.ERROR, "zone-question", open_zone(near, near.open_places), place)
     if model.site.zones:
         for finding in source_ages(model, datetime.now(UTC)):
             yield replace(finding, place=f"zone-file/{finding.place}")

@@ -33,6 +33,9 @@ from planning.site.zones.times import State
 LISTED_WINDOW_S = 3600.0
 """Time after take-off in which listed zones are looked at: nothing is known of the flight yet."""
 
+OPEN_ZONE = say("where it lies is an open question: no flight is ready until it is answered (--permit)")
+"""What becomes of a zone whose place the file does not say for sure."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AddedZones:
@@ -220,6 +223,8 @@ class ZoneRow:
         Name, restriction, reasons and heights, in words.
     distance_m
         Horizontally from the airspace box; infinite where nobody knows.
+    is_open
+        Whether it is not known for sure where it lies, and nobody has answered: no flight is ready until then.
     """
 
     id: str
@@ -227,6 +232,7 @@ class ZoneRow:
     what: str
     distance_m: float
     is_kept: bool
+    is_open: bool
     state: str
     permitted: str
     questions: tuple[str, ...]
@@ -246,9 +252,10 @@ def _row(near: NearZone) -> ZoneRow:
         zone_text(near),
         local.distance_m,
         near.is_kept,
+        bool(near.open_places),
         near.state.value,
         near.permitted,
-        (*zone.questions, *zone.place_questions, *local.questions),
+        local.all_questions,
     )
 
 
@@ -288,10 +295,8 @@ def zone_facts(near: NearZone) -> tuple[str, ...]:
     lines = [zone_text(near), *(text for text in (zone.conditions, zone.message) if text)]
     if near.permitted:
         lines.append(say("permitted by '{}'", near.permitted))
-    elif near.is_kept:
-        lines.append(say("plans keep out of it"))
     else:
-        lines.append(say("plans need not keep out of it"))
+        lines.append(_kept_text(near))
     if near.state is not State.APPLIES:
         lines.append(say("it applies at some times only"))
     for authority in zone.authorities:
@@ -299,8 +304,14 @@ def zone_facts(near: NearZone) -> tuple[str, ...]:
             text for text in (authority.name, authority.contact, authority.purpose, authority.interval_before) if text
         )
         lines.append(say("authority: {}", told))
-    questions = (*zone.questions, *zone.place_questions, *near.local.questions)
-    return (*lines, *(say("question: {}", question) for question in questions))
+    return (*lines, *(say("question: {}", question) for question in near.local.all_questions))
+
+
+def _kept_text(near: NearZone) -> str:
+    """Whether plans keep out of a zone without a permission."""
+    if near.open_places:
+        return OPEN_ZONE
+    return say("plans keep out of it") if near.is_kept else say("plans need not keep out of it")
 
 
 def zone_lines(near: NearZone, model: SiteModel) -> tuple[str, ...]:
@@ -322,10 +333,8 @@ def zone_lines(near: NearZone, model: SiteModel) -> tuple[str, ...]:
         lines.append(say("permitted by '{}'", near.permitted))
     elif near.state is State.NOT_THEN:
         lines.append(say("it does not apply at the planned time"))
-    elif near.is_kept:
-        lines.append(say("plans keep out of it"))
     else:
-        lines.append(say("plans need not keep out of it"))
+        lines.append(_kept_text(near))
     return tuple(lines)
 
 

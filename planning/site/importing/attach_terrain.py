@@ -24,7 +24,7 @@ from planning.geo.height_field import HeightField
 from planning.geo.mesh import TriangleMesh, box_mesh, join
 from planning.geo.solids import Solids
 from planning.site.file import site_sha256
-from planning.site.importing.elevation import HeightOptions
+from planning.site.importing.elevation import SRTM, HeightOptions
 from planning.site.importing.terrain import Area, Sampled, sample_heights
 from planning.site.records import Obstacle, Site, SiteModel, panel_corners, panel_triangles
 from planning.site.terrain import surfaces, terrain_of
@@ -46,6 +46,10 @@ SURFACE, SURFACE_UNKNOWN = "surface", "surface-unknown"
 MAX_BOXES = 12_000
 """Of one obstacle; more are made fewer by coarser steps of height."""
 
+SURVEYED_M, SURVEYED_SPACING_M = 0.6, 5.0
+"""Of surveys from the air, whose posts are so near: the error below plants that the USGS Lidar Base Specification
+allows its coarsest quality level (QL3) at 19 of 20 places. What has posts further apart may be a product like SRTM."""
+
 RIM_M = 3.0
 """At most so far beside a building, holes in the ground are taken to be its own."""
 
@@ -66,7 +70,8 @@ class TerrainRequest:
     step_m
         Of the grids; None: as fine as the files.
     accuracy_m
-        How far the ground may lie off the files' heights; None: what is known of their product, or 0.
+        How far the ground may lie off the files' heights; None: what is known of their product, else
+        `unknown_accuracy_m`.
     shift_m
         Added to all heights; `home`: what brings the terrain to home.
     taller_than_m
@@ -136,8 +141,7 @@ def attach_terrain(model: SiteModel, request: TerrainRequest, stem: str, monitor
     surface = None if surface is None else _shifted(surface, shift_m)
     filled, more = _filled(model, ground, surface)
     notes += [*more, *_notes(filled, surface, request)]
-    products = [raster.product.accuracy_m for raster in ground.rasters if raster.product is not None]
-    accuracy_m = max(products, default=0.0) if request.accuracy_m is None else request.accuracy_m
+    accuracy_m = _accuracy_m(ground) if request.accuracy_m is None else request.accuracy_m
     terrain = terrain_of(
         filled.field,
         filled.upper_m,
@@ -155,6 +159,19 @@ def attach_terrain(model: SiteModel, request: TerrainRequest, stem: str, monitor
         attached, meshes, counts = _with_obstacles(attached, surface, request.taller_than_m, stem)
     attached = replace(attached, sha256=site_sha256(attached.site))
     return Attached(attached, tuple(notes), filled, surface, meshes, home_moved_m, *counts)
+
+
+def unknown_accuracy_m(post_spacing_m: float) -> float:
+    """How far the ground may lie off heights of which nobody says where they are from."""
+    return SURVEYED_M if post_spacing_m <= SURVEYED_SPACING_M else SRTM.accuracy_m
+
+
+def _accuracy_m(ground: Sampled) -> float:
+    spacing_m = ground.post_spacing_m
+    return max(
+        unknown_accuracy_m(spacing_m) if raster.product is None else raster.product.accuracy_m
+        for raster in ground.rasters
+    )
 
 
 def without_terrain(model: SiteModel) -> SiteModel:
@@ -273,6 +290,16 @@ def _notes(ground: Sampled, surface: Sampled | None, request: TerrainRequest) ->
             "given with --accuracy",
             product.name,
             product.accuracy_m,
+        )
+        notes.append(text)
+    if request.accuracy_m is None and any(raster.product is None for raster in ground.rasters):
+        text = say(
+            "the files do not say how good their heights are: {:g} m more are kept above the ground, as for {}; "
+            "another value can be given with --accuracy",
+            unknown_accuracy_m(ground.post_spacing_m),
+            say("surveys from the air (USGS)")
+            if ground.post_spacing_m <= SURVEYED_SPACING_M
+            else say("global products with posts so far apart (SRTM)"),
         )
         notes.append(text)
     if product is not None and product.shows_surface:

@@ -48,6 +48,12 @@ UNIT_NAMES = {
 LOWEST_M, HIGHEST_M = -1000.0, 10_000.0
 """Ground beyond is none: the shore of the Dead Sea lies at -430 m, an open mine at -300 m, Everest at 8 849 m."""
 
+FILL_STEP_M = 5.0
+"""No shore rises so far from one post to the next; between posts further apart, none is steeper than 45 degrees."""
+
+MAX_JUDGED = 8_000_000
+"""Posts that are judged at once: some 250 MB."""
+
 MAX_FILES = 5000
 """Of one folder that are looked at."""
 
@@ -122,6 +128,8 @@ class Raster:
         Coordinates are longitudes and latitudes, so that x comes back after 360 degrees.
     geoid_note
         Which geoid stands for what its heights are above; empty where that is said already.
+    is_zero_unknown
+        Whether heights of exactly 0 count as not known (`with_zeros_judged`).
     """
 
     path: Path
@@ -134,6 +142,7 @@ class Raster:
     product: Product | None = None
     notes: tuple[str, ...] = ()
     geoid_note: str = ""
+    is_zero_unknown: bool = False
 
     def coordinates(self, column: Array, row: Array) -> tuple[Array, Array]:
         """Coordinates of posts, x and y, in the raster's system."""
@@ -169,7 +178,8 @@ class Raster:
         raw = _read_hgt(self, *window) if self.path.suffix.lower() == ".hgt" else _read_tiff(self, *window)
         metres = raw * self.conversion.height_unit_m
         with np.errstate(invalid="ignore"):
-            return np.where((metres >= LOWEST_M) & (metres <= HIGHEST_M), raw, np.nan)
+            is_height = (metres >= LOWEST_M) & (metres <= HIGHEST_M)
+            return np.where(is_height & ((metres != 0.0) | (not self.is_zero_unknown)), raw, np.nan)
 
 
 def open_heights(path: Path, options: HeightOptions = HeightOptions()) -> Raster:
@@ -184,6 +194,81 @@ def open_heights(path: Path, options: HeightOptions = HeightOptions()) -> Raster
     if path.suffix.lower() == ".hgt":
         return _open_hgt(path, options)
     return _open_tiff(path, options)
+
+
+def with_zeros_judged(raster: Raster, window: tuple[int, int, int, int], spacing_m: float) -> Raster:
+    """A raster whose heights of exactly 0 count as not known where they look like a fill value, with a note.
+
+    Programs fill holes and borders with 0, and often do not say so. A sea at 0 m has a shore that begins at 0; a patch
+    of zeros of which no neighbour lies within `FILL_STEP_M` and 45 degrees of it has none. Neither has a window of
+    nothing but zeros. Zeros are heights in products, and where a file says another value that means none.
+
+    Parameters
+    ----------
+    window
+        First and last rows and columns, ends excluded, of the posts that count.
+    spacing_m
+        Between its posts.
+    """
+    first_row, last_row, first_column, last_column = window
+    if raster.product is not None or first_row >= last_row or first_column >= last_column or states_nodata(raster.path):
+        return raster
+    n_rows, is_all_zero = max(1, MAX_JUDGED // (last_column - first_column)), True
+    for start in range(first_row, last_row, n_rows):
+        # A row of the next part, too: what lies on both sides of the border between two parts touches.
+        heights = raster.read(start, min(start + n_rows + 1, last_row), first_column, last_column)
+        is_all_zero = is_all_zero and not (heights != 0.0).any()
+        step_m = _fill_step_m(heights * raster.conversion.height_unit_m, max(FILL_STEP_M, spacing_m))
+        if step_m is not None:
+            text = say(
+                "'{}' has heights of exactly 0 m that lie {:.0f} m or more off all heights around them, and does not "
+                "say which value means that a height is not known: its zeros count as not known; where 0 m is the "
+                "ground, write such a value into the file (gdal_edit.py -a_nodata -9999 FILE)",
+                raster.path.name,
+                step_m,
+            )
+            return replace(raster, is_zero_unknown=True, notes=(*raster.notes, text))
+    if is_all_zero:
+        raise InputError.say(
+            "all its heights below the site are exactly 0 m, and it does not say which value means that a height is "
+            "not known: take another file; where 0 m is the ground, write such a value into it (gdal_edit.py -a_nodata "
+            "-9999 FILE), or attach no terrain",
+            place=raster.path,
+        )
+    return raster
+
+
+def _fill_step_m(heights_m: Array, least_m: float) -> float | None:
+    """How far the nearest neighbour of a patch of zeros lies above or below it where that is at least some metres.
+
+    None where all patches have nearer neighbours, or there is none.
+    """
+    from scipy.ndimage import label, minimum, minimum_filter
+
+    zeros = heights_m == 0.0
+    if not zeros.any() or zeros.all():
+        return None
+    off = np.where(zeros | np.isnan(heights_m), np.inf, np.abs(heights_m))
+    nearest = minimum_filter(off, size=(3, 3), mode="nearest")
+    patches, n_patches = label(zeros, structure=np.ones((3, 3)))
+    steps = np.asarray(minimum(nearest, patches, np.arange(1, n_patches + 1)))
+    steps = steps[np.isfinite(steps) & (steps >= least_m)]
+    return float(steps.min()) if len(steps) else None
+
+
+def states_nodata(path: Path) -> bool:
+    """Whether a file says which of its values mean that a height is not known."""
+    if path.suffix.lower() == ".hgt":
+        return True
+    import rasterio
+    from rasterio.enums import MaskFlags
+    from rasterio.errors import RasterioError
+
+    try:
+        with _quiet(), rasterio.Env(**GDAL_OPTIONS), rasterio.open(path, driver="GTiff") as source:
+            return source.nodata is not None or MaskFlags.all_valid not in source.mask_flag_enums[0]
+    except (RasterioError, OSError, ValueError, AttributeError) as error:
+        raise _damaged(path, error) from error
 
 
 def height_files(place: Path, south_west_deg: tuple[float, float], north_east_deg: tuple[float, float]) -> list[Path]:
@@ -561,8 +646,11 @@ def _quiet() -> Iterator[None]:
 def _damaged(path: Path, error: Exception) -> InputError:
     if isinstance(error, InputError):
         return error
-    reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-    return InputError.say("cannot be read as a GeoTIFF ({}); copy it again", reason, place=path)
+    return InputError.say(
+        "cannot be read as a GeoTIFF: it is cut off or damaged; copy or download it again, and compare its size with "
+        "that at its source",
+        place=path,
+    )
 
 
 def same_grid(one: Raster, other: Raster) -> bool:

@@ -36,6 +36,7 @@ from planning.site.importing.elevation import (
     same_grid,
     tile_names,
     unique_notes,
+    with_zeros_judged,
 )
 from planning.site.importing.geoid_file import found_geoid, geoid_text, open_geoid
 from planning.site.terrain import MAX_NODES, TerrainSource
@@ -153,7 +154,8 @@ def sample_heights(
         A file is damaged or says too little, or none covers any of the area.
     """
     monitor.report(say("looking for heights"), 0, 1)
-    rasters = _with_geoid(_rasters(origin, area, places, options), origin, options.geoid)
+    rasters = [_judged(each, origin, area) for each in _rasters(origin, area, places, options)]
+    rasters = _with_geoid(rasters, origin, options.geoid)
     spacing_m = min(_spacing_m(raster, origin, area) for raster in rasters)
     width_m, depth_m = (float(value) for value in area.high_xy_m - area.low_xy_m)
     if step_m is None:
@@ -216,6 +218,17 @@ def _rasters(origin: Origin, area: Area, places: Sequence[Path], options: Height
     if not found:
         raise _nothing_there(origin, area, places)
     return found
+
+
+def _judged(raster: Raster, origin: Origin, area: Area) -> Raster:
+    columns, rows = raster.pixels_at(*_corners(origin, area)[0])
+    window = (
+        max(math.floor(rows.min()) - 1, 0),
+        min(math.ceil(rows.max()) + 2, raster.height),
+        max(math.floor(columns.min()) - 1, 0),
+        min(math.ceil(columns.max()) + 2, raster.width),
+    )
+    return with_zeros_judged(raster, window, _spacing_m(raster, origin, area))
 
 
 def _corners(origin: Origin, area: Area) -> tuple[tuple[Array, Array], tuple[float, float], tuple[float, float]]:

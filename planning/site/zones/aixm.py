@@ -20,7 +20,7 @@ from planning.base.messages import say
 from planning.site.zones.arcs import arc_corners
 from planning.site.zones.fields import quoted
 from planning.site.zones.geojson import MAX_RADIUS_M, POINT_WIDTH_M, ring
-from planning.site.zones.heights import EVERYWHERE_BELOW, FOOT_M, NAUTICAL_MILE_M, limit
+from planning.site.zones.heights import EVERYWHERE_BELOW, FOOT_M, NAUTICAL_MILE_M, limit, no_limit, unread_limit
 from planning.site.zones.records import (
     ALWAYS,
     FROM_GROUND,
@@ -76,7 +76,9 @@ def read(content: bytes, path: Path) -> ZoneSet:
     except HostileXml as error:
         raise InputError.say("the AIXM file {}; expected airspaces alone", error, place=path) from error
     except ValueError as error:
-        raise InputError.say("not valid XML ({})", error, place=path) from error
+        raise InputError.say(
+            "not valid XML ({}): it is cut off or damaged; download it again", error, place=path
+        ) from error
     known = {found: each for each in root.iter() if (found := each.get(GML_ID))}
     known |= {f"urn:uuid:{_text(each, 'identifier')}": each for each in _all(root, "Airspace")}
     zones = []
@@ -126,7 +128,7 @@ def _zone(one: Element, airspace: Element, known: Mapping[str, Element], changes
     if any((each.text or "").strip().upper() not in ("", "BASE", "UNION") for each in _all(one, "operation")):
         questions.append(say("parts that are cut off or cut out count all the same"))
     if not volumes and not places:
-        places.append(say("an area has no outline"))
+        places.append(say("an area has no outline that can be read"))
     name = _text(one, "name") or _text(one, "designator") or unnamed
     return Zone(
         id=_text(one, "designator") or _text(airspace, "identifier") or name,
@@ -166,7 +168,7 @@ def _volumes(
     projection = _child(volume, "horizontalProjection")
     if projection is None:
         if not parts:
-            places.append(say("an area has no outline"))
+            places.append(say("an area has no outline that can be read"))
         return
     lower, upper = _limit(volume, "lower", questions), _limit(volume, "upper", questions)
     systems = {name for each in projection.iter() if (name := each.get("srsName"))}
@@ -186,9 +188,9 @@ def _volumes(
             width_m = tolerance_m if is_sure else tolerance_m + POINT_WIDTH_M
             yield Volume(Outline(tuple(corners), inner, width_m), lower, upper)
         elif not circles:
-            places.append(say("an area has no outline"))
+            places.append(say("an area has no outline that can be read"))
     if next(_all(projection, "PolygonPatch"), None) is None:
-        places.append(say("an area has no outline"))
+        places.append(say("an area has no outline that can be read"))
 
 
 def _of_another(
@@ -235,8 +237,7 @@ def _limit(volume: Element, which: str, questions: list[str]) -> Limit:
     """A limit: a number with its unit, or a word."""
     element, is_lower = _child(volume, f"{which}Limit"), which == "lower"
     if element is None or not (element.text or "").strip():
-        questions.append(say("the file gives no lower limit") if is_lower else say("the file gives no upper limit"))
-        return EVERYWHERE_BELOW
+        return no_limit(questions, is_lower=is_lower)
     word, unit = (element.text or "").strip().upper(), (element.get("uom") or "").upper()
     reference = _text(volume, f"{which}LimitReference")
     if word in ("GND", "SFC") and is_lower:
@@ -248,7 +249,7 @@ def _limit(volume: Element, which: str, questions: list[str]) -> Limit:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        questions.append(say("the height '{}' cannot be read", quoted(word)))
+        unread_limit(quoted(word), questions)
         return EVERYWHERE_BELOW
     if unit == "FL":
         return Limit(value * 100.0 * FOOT_M, HeightAbove.FLIGHT_LEVEL, f"FL{value:g}")

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from planning.base.messages import say
-from planning.site.zones.fields import Fields, authorities, period_of, restriction_of
+from planning.site.zones.fields import Asked, Fields, authorities, period_of, restriction_of
 from planning.site.zones.geojson import circle, outlines
 from planning.site.zones.heights import EVERYWHERE_BELOW, limit
 from planning.site.zones.records import ALWAYS, UNLIMITED, Circle, Limit, Outline, Period, Volume, Zone, ZoneSet
@@ -49,13 +49,12 @@ def read(content: Any, path: Path) -> ZoneSet:
 
 
 def _zone(feature: Any, unnamed: str) -> Zone:
-    questions: list[str] = []
-    fields = Fields(feature, "feature", questions)
+    asked = Asked()
+    fields = Fields(feature, "feature", asked.questions)
     identifier, name = fields.text("identifier"), " ".join(fields.texts("name"))
     u_space = fields.text("uSpaceClass")
     conditions = [*fields.texts("restrictionConditions"), *([f"U-space {u_space}"] if u_space else [])]
-    places: list[str] = []
-    volumes = [volume for each in fields.items("geometry") for volume in _volumes(each, places)]
+    volumes = [volume for each in fields.items("geometry") for volume in _volumes(each, asked)]
     return Zone(
         id=identifier or name or unnamed,
         name=name or identifier or unnamed,
@@ -68,14 +67,13 @@ def _zone(feature: Any, unnamed: str) -> Zone:
         authorities=authorities(fields),
         volumes=tuple(volumes),
         periods=_periods(fields),
-        questions=tuple(questions),
-        place_questions=tuple(places),
+        **asked.of_zone(),
     )
 
 
-def _volumes(content: Any, questions: list[str]) -> list[Volume]:
-    fields = Fields(content, "geometry", questions)
-    lower, upper = _limits(fields, questions)
+def _volumes(content: Any, asked: Asked) -> list[Volume]:
+    fields, questions = Fields(content, "geometry", asked.places), asked.places
+    lower, upper = _limits(fields, asked.questions)
     projection = Fields(fields.values.get("horizontalProjection"), "horizontalProjection", questions)
     projection.ask_about_others(_PROJECTION_FIELDS)
     kind, areas = projection.text("type"), list[Outline | Circle]()
@@ -92,12 +90,13 @@ def _volumes(content: Any, questions: list[str]) -> list[Volume]:
 def _limits(fields: Fields, questions: list[str]) -> tuple[Limit, Limit]:
     if fields.ask_about_others(_VOLUME_FIELDS):
         return EVERYWHERE_BELOW, UNLIMITED
-    unit = fields.text("uomDimensions")
+    heights = Fields(fields.values, fields.name, questions)
+    unit = heights.text("uomDimensions")
     lower, upper = (
         limit(
-            fields.number(f"{which}Limit"),
+            heights.number(f"{which}Limit"),
             unit,
-            fields.text(f"{which}VerticalReference"),
+            heights.text(f"{which}VerticalReference"),
             questions,
             is_lower=which == "lower",
             is_stated=fields.values.get(f"{which}Limit") is not None,
@@ -121,5 +120,5 @@ def _periods(fields: Fields) -> tuple[Period, ...] | None:
             period = None
         found.append(period)
     if not found:
-        fields.questions.append(say("the file does not say when this applies"))
+        fields.questions.append(say("the file does not say when this applies, so it counts at all times"))
     return None if not found or None in found else tuple(each for each in found if each is not None)

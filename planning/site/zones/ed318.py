@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from planning.site.zones.fields import RESTRICTIONS, Fields, authorities, period_of, restriction_of
+from planning.site.zones.fields import RESTRICTIONS, Asked, Fields, authorities, period_of, restriction_of
 from planning.site.zones.geojson import check_reference_system, features_of, volumes
 from planning.site.zones.records import (
     ALWAYS,
@@ -56,12 +56,11 @@ def read(content: Any, path: Path) -> ZoneSet:
 
 
 def _zone(feature: Any, unnamed: str) -> Zone:
-    questions: list[str] = []
-    top = Fields(feature, "feature", questions)
-    fields = Fields(top.values.get("properties"), "properties", questions)
+    asked = Asked()
+    top = Fields(feature, "feature", asked.questions)
+    fields = Fields(top.values.get("properties"), "properties", asked.questions)
     name = " ".join(fields.texts("name"))
-    places: list[str] = []
-    found = volumes(top.values.get("geometry"), places)
+    found = volumes(top.values.get("geometry"), asked)
     return Zone(
         id=fields.text("identifier") or name or unnamed,
         name=name or fields.text("identifier") or unnamed,
@@ -74,8 +73,7 @@ def _zone(feature: Any, unnamed: str) -> Zone:
         authorities=authorities(fields),
         volumes=tuple(found),
         periods=_periods(fields),
-        questions=tuple(questions),
-        place_questions=tuple(places),
+        **asked.of_zone(),
     )
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from planning.base.errors import shortened
@@ -25,6 +26,23 @@ def quoted(value: object) -> str:
     """A value as a question quotes it."""
     text = shortened(str(value))
     return text if len(text) <= MAX_SHOWN else f"{text[:MAX_SHOWN]} ..."
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What a file leaves open of a zone while it is read: in general, about its place, about its width."""
+
+    questions: list[str] = field(default_factory=list)
+    places: list[str] = field(default_factory=list)
+    widths: list[str] = field(default_factory=list)
+
+    def of_zone(self) -> dict[str, Any]:
+        """As fields of a zone."""
+        return {
+            "questions": tuple(self.questions),
+            "place_questions": tuple(self.places),
+            "width_questions": tuple(self.widths),
+        }
 
 
 class Fields:
@@ -48,7 +66,10 @@ class Fields:
 
     def ask(self, name: str, value: object) -> None:
         """Ask what a field means."""
-        self.questions.append(say("'{}' cannot be read, it is '{}'", name, quoted(value)))
+        if value in (None, "", [], {}):
+            self.questions.append(say("the field '{}' is missing or empty", name))
+        else:
+            self.questions.append(say("the field '{}' cannot be read: it is '{}'", name, quoted(value)))
 
     def has(self, name: str) -> bool:
         """Whether a field is there and says something."""
@@ -130,7 +151,11 @@ def restriction_of(fields: Fields, name: str) -> Restriction:
     word = fields.text(name).upper()
     found = RESTRICTIONS.get(word)
     if found is None:
-        fields.ask(name, word or fields.values.get(name))
+        if word:
+            text = say("what it restricts is not known here, '{}', so it counts as prohibited", quoted(word))
+        else:
+            text = say("the file does not say what it restricts (field '{}'), so it counts as prohibited", name)
+        fields.questions.append(text)
     return found or Restriction.UNKNOWN
 
 

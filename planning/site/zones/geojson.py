@@ -12,7 +12,7 @@ from typing import Any
 from planning.base.errors import InputError
 from planning.base.messages import say
 from planning.geo.crs import names_wgs84
-from planning.site.zones.fields import Fields, quoted
+from planning.site.zones.fields import Asked, Fields, quoted
 from planning.site.zones.heights import EVERYWHERE_BELOW, limit
 from planning.site.zones.records import (
     UNLIMITED,
@@ -91,47 +91,48 @@ def outlines(kind: str, coordinates: Any, questions: list[str]) -> list[Outline]
             holes = tuple(each for each in rings[1:] if len(each) > 3) if len(questions) == before else ()
             found.append(Outline(rings[0], holes, 0.0 if len(questions) == before else POINT_WIDTH_M))
         else:
-            questions.append(say("an area has no outline"))
+            questions.append(say("an area has no outline that can be read"))
     if not found and len(questions) == 0:
-        questions.append(say("an area has no outline"))
+        questions.append(say("an area has no outline that can be read"))
     return found
 
 
-def volumes(geometry: Any, questions: list[str], layer: Any = None, nested: int = 0) -> list[Volume]:
+def volumes(geometry: Any, asked: Asked, layer: Any = None, nested: int = 0) -> list[Volume]:
     """Volumes of a geometry of GeoJSON, with the layers and circles of ED-318.
 
     Parameters
     ----------
-    questions
+    asked
         What cannot be read is added.
     layer
         That of the collection it stands in, for geometries without one.
     """
-    fields = Fields(geometry, "geometry", questions)
+    places = asked.places
+    fields = Fields(geometry, "geometry", places)
     fields.ask_about_others(_GEOMETRY_FIELDS)
     layer, kind = fields.values.get("layer", layer), fields.text("type")
     if kind == "GeometryCollection":
         if nested >= MAX_NESTED:
-            questions.append(say("collections of areas are nested too deeply"))
+            places.append(say("collections of areas are nested too deeply"))
             return []
         parts = fields.items("geometries")
         if not parts:
-            questions.append(say("an area has no outline"))
-        return [volume for part in parts for volume in volumes(part, questions, layer, nested + 1)]
-    lower, upper = _layer(layer, questions)
+            places.append(say("an area has no outline that can be read"))
+        return [volume for part in parts for volume in volumes(part, asked, layer, nested + 1)]
+    lower, upper = _layer(layer, asked.questions)
     areas: list[Outline | Circle] = []
     coordinates = fields.values.get("coordinates")
     if kind in ("Polygon", "MultiPolygon"):
-        areas += outlines(kind, coordinates, questions)
+        areas += outlines(kind, coordinates, places)
     elif kind == "Point" and fields.has("extent"):
-        extent = Fields(fields.values["extent"], "extent", questions)
+        extent = Fields(fields.values["extent"], "extent", places)
         if extent.text("subType") != "Circle" or extent.ask_about_others(("subType", "radius")):
             extent.ask("extent", extent.values)
-        found = circle(coordinates, extent.number("radius"), questions)
+        found = circle(coordinates, extent.number("radius"), places)
         areas += [] if found is None else [found]
     elif kind in NOT_AREAS:
-        points = _flat(coordinates, questions)
-        questions.append(say("a {} has no width; it counts with {:.0f} m to each side", kind, POINT_WIDTH_M))
+        points = _flat(coordinates, places)
+        asked.widths.append(say("a {} has no width; it counts with {:.0f} m to each side", kind, POINT_WIDTH_M))
         areas += [Outline(points, tolerance_m=POINT_WIDTH_M)] if points else []
     elif isinstance(geometry, dict):
         fields.ask("type", kind)
@@ -241,13 +242,12 @@ def read(content: Any, path: Path) -> ZoneSet:
     check_reference_system(content, path)
     zones = []
     for number, feature in enumerate(features_of(content), 1):
-        questions: list[str] = []
-        places: list[str] = []
-        fields = Fields(feature, "feature", questions)
+        asked = Asked([NO_MEANING])
+        fields = Fields(feature, "feature", asked.questions)
         properties = fields.values.get("properties")
         named = Fields(properties if isinstance(properties, dict) else {}, "properties", [])
         name = named.text("name") or named.text("title") or named.text("Name") or f"{path.stem} {number}"
-        found = volumes(fields.values.get("geometry"), places)
+        found = volumes(fields.values.get("geometry"), asked)
         zones.append(
             Zone(
                 id=fields.text("id") or named.text("id") or name,
@@ -255,8 +255,7 @@ def read(content: Any, path: Path) -> ZoneSet:
                 restriction=Restriction.UNKNOWN,
                 message=named.text("description"),
                 volumes=tuple(found),
-                questions=(NO_MEANING, *questions),
-                place_questions=tuple(places),
+                **asked.of_zone(),
             )
         )
     return ZoneSet("GeoJSON", tuple(zones))

@@ -26,6 +26,21 @@ EVERYWHERE_BELOW = Limit(None, HeightAbove.UNKNOWN, "?")
 """In the place of a limit that cannot be read: as low or as high as there is."""
 
 
+def no_limit(questions: list[str], *, is_lower: bool) -> Limit:
+    """In the place of a limit that a file has to give and does not, with a question."""
+    questions.append(
+        say("the file gives no lower limit, so it counts from the ground up")
+        if is_lower
+        else say("the file gives no upper limit, so it counts at any height above")
+    )
+    return EVERYWHERE_BELOW
+
+
+def unread_limit(written: str, questions: list[str]) -> None:
+    """Ask about a height that is none."""
+    questions.append(say("the height '{}' cannot be read, so every height counts", written))
+
+
 def limit(
     value: float | None, unit: str, reference: str, questions: list[str], *, is_lower: bool, is_stated: bool = True
 ) -> Limit:
@@ -46,10 +61,19 @@ def limit(
         if not is_stated:
             return FROM_GROUND if is_lower else Limit(None, HeightAbove.SEA_LEVEL, "UNL")
         return EVERYWHERE_BELOW
+    written = " ".join(word for word in (f"{value:g}", unit.strip(), reference.strip()) if word)
     if unit_m is None:
-        questions.append(say("a height is in '{}'; expected metres or feet", unit))
+        questions.append(
+            say("the height '{}' does not say whether it is in metres or feet, so every height counts", written)
+        )
     if above is None:
-        questions.append(say("a height is counted from '{}'; expected AGL, AMSL or WGS84", reference))
+        questions.append(
+            say(
+                "the height '{}' does not say whether it is above ground (AGL), sea level (AMSL) or the ellipsoid "
+                "(WGS84), so every height counts",
+                written,
+            )
+        )
     if above is None or unit_m is None:
-        return Limit(None, HeightAbove.UNKNOWN, f"{value:g} {unit} {reference}".strip())
+        return Limit(None, HeightAbove.UNKNOWN, f"{written} ?")
     return Limit(value * unit_m, above, f"{value:g} {unit.strip().lower()} {word}")

@@ -105,6 +105,11 @@ class NearZone:
         return not self.permitted and self.is_restricting
 
     @property
+    def open_places(self) -> tuple[str, ...]:
+        """What keeps anybody from saying that flights stay out of it, until the pilot answers (a permission)."""
+        return self.local.open_places if self.is_kept else ()
+
+    @property
     def is_restricting(self) -> bool:
         """Whether it restricts anything in the time of the flight."""
         return self.state.counts and self.local.zone.restriction is not Restriction.NONE

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -101,14 +101,31 @@ class LocalZone:
         Horizontally from the airspace box, 0 where it overlaps. A lower bound for zones beyond `REACH_M`.
     volumes
         None of them beyond `REACH_M`.
-    questions
-        What its shape leaves open.
+    questions, place_questions
+        What its shape leaves open, and of that what may put it elsewhere.
+    doubtful
+        Hull of outlines that cross themselves, shapely: whoever mixed up corners meant an area within. Else None.
     """
 
     zone: Zone
     distance_m: float
     volumes: tuple[LocalVolume, ...] = ()
     questions: tuple[str, ...] = ()
+    place_questions: tuple[str, ...] = ()
+    doubtful: Any = None
+
+    @property
+    def open_places(self) -> tuple[str, ...]:
+        """What is open about where it lies; how wide it is only where it lies near enough to matter."""
+        widths = self.zone.width_questions if self.volumes else ()
+        return (*self.zone.place_questions, *widths, *self.place_questions)
+
+    @property
+    def all_questions(self) -> tuple[str, ...]:
+        """Whatever is open about it."""
+        zone = self.zone
+        of_zone = *zone.questions, *zone.place_questions, *zone.width_questions
+        return tuple(dict.fromkeys((*of_zone, *self.questions, *self.place_questions)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -146,12 +163,13 @@ def local_zones(found: ZoneSet, origin: Origin, airspace: Airspace, ground: Grou
         nearest_m = min(nearest_m, bound_m)
         if bound_m <= REACH_M:
             local = _local_zone(zone, bounds, frame)
-            if local.volumes or zone.place_questions:
+            if local.volumes or zone.place_questions or zone.width_questions:
                 near.append(local)
-        elif zone.place_questions and (bound_m <= COUNTRY_M or not zone.volumes):
-            near.append(LocalZone(zone, bound_m))
         elif not zone.volumes:
-            near.append(LocalZone(zone, bound_m, questions=(say("the file does not say where this zone lies"),)))
+            lost = () if zone.place_questions else (say("the file does not say where this zone lies"),)
+            near.append(LocalZone(zone, bound_m, place_questions=lost))
+        elif (zone.place_questions or zone.width_questions) and bound_m <= COUNTRY_M:
+            near.append(LocalZone(zone, bound_m))
     return LocalZones(tuple(near), nearest_m, nearest_m > COUNTRY_M and _is_swapped(found, frame))
 
 
@@ -234,29 +252,56 @@ def _least_m(origin: Origin, south: float, north: float, west: float, east: floa
 def _local_zone(zone: Zone, bounds: Sequence[float], frame: _Frame) -> LocalZone:
     import shapely
 
-    questions: dict[str, None] = {}
-    volumes = []
+    doubts, volumes = _Doubts(), []
     box = shapely.box(*frame.box)
     for volume, bound_m in zip(zone.volumes, bounds, strict=True):
         if bound_m > REACH_M:
             continue
-        asked: list[str] = []
-        area = _area(volume.area, frame, asked)
+        of_volume = _Doubts()
+        area = _area(volume.area, frame, of_volume)
         if area.is_empty:
             continue
-        floor_m, ceiling_m = _span(volume, area, frame, asked)
-        if not floor_m < ceiling_m:
-            asked.append(
-                say("its lower limit '{}' lies above the upper one '{}'", volume.lower.written, volume.upper.written)
+        floor_m, ceiling_m = _span(volume, area, frame, of_volume.questions)
+        if not floor_m < ceiling_m or _is_upside_down(volume):
+            text = say(
+                "its lower limit '{}' does not lie below the upper one '{}', so every height counts",
+                volume.lower.written,
+                volume.upper.written,
             )
+            of_volume.questions.append(text)
             floor_m, ceiling_m = -math.inf, math.inf
-        questions |= dict.fromkeys(asked)
+        doubts.add(of_volume)
         volumes.append(LocalVolume(area, floor_m, ceiling_m, volume))
     distance_m = min((float(each.area.distance(box)) for each in volumes), default=max(REACH_M, min(bounds)))
-    return LocalZone(zone, distance_m, tuple(volumes), tuple(questions))
+    # What has no width anyhow, by its file, encloses nothing.
+    places = () if zone.width_questions else tuple(dict.fromkeys(doubts.places))
+    hull = shapely.union_all(doubts.hulls) if doubts.hulls else None
+    return LocalZone(zone, distance_m, tuple(volumes), tuple(dict.fromkeys(doubts.questions)), places, hull)
 
 
-def _area(area: Outline | Circle, frame: _Frame, questions: list[str]) -> Any:
+@dataclass(frozen=True, slots=True)
+class _Doubts:
+    """What shapes leave open: see `LocalZone`."""
+
+    questions: list[str] = field(default_factory=list)
+    places: list[str] = field(default_factory=list)
+    hulls: list[Any] = field(default_factory=list)
+
+    def add(self, others: _Doubts) -> None:
+        self.questions.extend(others.questions)
+        self.places.extend(others.places)
+        self.hulls.extend(others.hulls)
+
+
+def _is_upside_down(volume: Volume) -> bool:
+    """Whether limits that are counted from the same leave no height between them."""
+    lower, upper = volume.lower, volume.upper
+    if lower.value_m is None or upper.value_m is None or lower.above is not upper.above:
+        return False
+    return upper.value_m <= lower.value_m
+
+
+def _area(area: Outline | Circle, frame: _Frame, doubts: _Doubts) -> Any:
     """Area in the local frame, shapely, cut to the surroundings; empty where it lies beside them."""
     import shapely
 
@@ -267,14 +312,12 @@ def _area(area: Outline | Circle, frame: _Frame, questions: list[str]) -> Any:
         rings = [_rings(ring, frame) for ring in (area.ring, *area.holes)]
         reach_m = max(float(np.hypot(*points.T).max()) for outlines, _ in rings for points in outlines)
         if reach_m > FAR_SIDE_M:
-            questions.append(say("its outline reaches around the earth, so it counts as lying here"))
+            doubts.questions.append(say("its outline reaches around the earth, so it counts as lying here"))
             return window
-        outer = [_whole(points, questions) for points in rings[0][0]]
-        holes = [_whole(points, []) for outlines, _ in rings[1:] for points in outlines[:1]]
+        outer = [_whole(points, doubts) for points in rings[0][0]]
         # A hole is one where both ways to draw its edges say so.
-        holes = [
-            hole.intersection(_whole(outlines[-1], [])) for hole, (outlines, _) in zip(holes, rings[1:], strict=True)
-        ]
+        unasked = _Doubts()
+        holes = [_whole(drawn[0], unasked).intersection(_whole(drawn[-1], unasked)) for drawn, _ in rings[1:]]
         found = shapely.union_all(outer)
         if holes:
             found = found.difference(shapely.union_all(holes))
@@ -357,7 +400,7 @@ def _rings(ring: Sequence[LonLat], frame: _Frame) -> tuple[list[Array], float]:
     return drawn, cost_m
 
 
-def _whole(points: Array, questions: list[str]) -> Any:
+def _whole(points: Array, doubts: _Doubts) -> Any:
     """What a ring encloses, shapely; all lobes where it crosses itself, a band where it encloses nothing."""
     import shapely
 
@@ -365,11 +408,12 @@ def _whole(points: Array, questions: list[str]) -> Any:
     polygon = shapely.Polygon(points) if len(points) >= 4 else shapely.Polygon()
     if not polygon.is_valid:
         if shapely.is_valid_reason(polygon).startswith("Self-intersection"):
-            questions.append(say("its outline crosses itself, so all that it goes around counts"))
+            doubts.questions.append(say("its outline crosses itself, so all that it goes around counts"))
+            doubts.hulls.append(polygon.convex_hull)
         polygon = shapely.make_valid(polygon, method="structure", keep_collapsed=False)
     if polygon.area >= LEAST_AREA_M2:
         return polygon
-    questions.append(say("its outline encloses nothing, so {:.0f} m to each side of it count", NARROW_M))
+    doubts.places.append(say("its outline encloses nothing, so {:.0f} m to each side of it count", NARROW_M))
     band = shapely.Point(distinct[0]) if len(distinct) == 1 else shapely.LineString(points)
     return band.buffer(NARROW_M)
 

@@ -15,7 +15,7 @@ from planning.base.files import check_lines
 from planning.base.messages import say
 from planning.site.zones.arcs import arc_corners
 from planning.site.zones.fields import quoted
-from planning.site.zones.heights import EVERYWHERE_BELOW, FOOT_M, NAUTICAL_MILE_M, REFERENCES
+from planning.site.zones.heights import EVERYWHERE_BELOW, FOOT_M, NAUTICAL_MILE_M, REFERENCES, no_limit, unread_limit
 from planning.site.zones.records import (
     ALWAYS,
     FROM_GROUND,
@@ -48,6 +48,9 @@ _LEVEL = re.compile(r"FL\s*(\d+(?:\.\d+)?)(?:\s*(?:AMSL|MSL|STD))?", re.IGNORECA
 
 _SKIPPED = ("AF", "AG", "AT", "AX", "AI", "SP", "SB", "TO", "TC")
 """Frequencies, labels, pens and terrain: they change no area."""
+
+_OUTLINE = ("AN", "AH", "AL", "DP", "DC", "DA", "DB")
+"""Where such lines stand before any `AC`, that of their airspace is lost."""
 
 
 def recognises(content: bytes) -> bool:
@@ -107,11 +110,12 @@ def _airspaces(content: bytes, questions: list[str]) -> Iterator[_Airspace]:
             if current is not None:
                 yield current
             current = _Airspace(rest.partition(";")[0].strip().upper())
-        elif command and current is None:
-            if command not in _SKIPPED and not command.startswith("V"):
-                questions.append(say("line '{}' belongs to no airspace", quoted(written)))
-        elif command and current is not None:
+        elif command and (current is not None or command in _OUTLINE):
+            if current is None:
+                current = _Airspace("", questions=[say("line '{}' belongs to no airspace", quoted(written))])
             _take(current, command, rest)
+        elif command and command not in _SKIPPED and not command.startswith("V"):
+            questions.append(say("line '{}' belongs to no airspace", quoted(written)))
     if current is not None:
         yield current
 
@@ -221,7 +225,7 @@ def _zone(airspace: _Airspace, unnamed: str) -> Zone:
     if airspace.points:
         volumes.append(Volume(Outline(tuple(airspace.points), tolerance_m=airspace.tolerance_m), lower, upper))
     if not volumes:
-        places.append(say("an area has no outline"))
+        places.append(say("an area has no outline that can be read"))
     name = airspace.name or unnamed
     return Zone(
         id=name,
@@ -237,8 +241,7 @@ def _zone(airspace: _Airspace, unnamed: str) -> Zone:
 
 def _limit(text: str | None, questions: list[str], *, is_lower: bool) -> Limit:
     if text is None:
-        questions.append(say("the file gives no lower limit") if is_lower else say("the file gives no upper limit"))
-        return EVERYWHERE_BELOW
+        return no_limit(questions, is_lower=is_lower)
     word = text.upper().strip()
     if word in ("GND", "SFC", "0"):
         return FROM_GROUND
@@ -249,9 +252,14 @@ def _limit(text: str | None, questions: list[str], *, is_lower: bool) -> Limit:
     found = _HEIGHT.fullmatch(word)
     if found is None or found[3] is None:
         if found is None:
-            questions.append(say("the height '{}' cannot be read", quoted(text)))
+            unread_limit(quoted(text), questions)
         else:
-            questions.append(say("the height '{}' does not say whether it is above ground or sea", quoted(text)))
+            questions.append(
+                say(
+                    "the height '{}' does not say whether it is above ground or sea, so every height counts",
+                    quoted(text),
+                )
+            )
         return replace(EVERYWHERE_BELOW, written=f"{quoted(text)} ?")
     above = HeightAbove.SEA_LEVEL if found[3] == "ALT" else REFERENCES[found[3]]
     return Limit(float(found[1]) * (1.0 if found[2] == "M" else FOOT_M), above, text)

@@ -190,8 +190,8 @@ class Zone:
         None of them: the file does not say where the zone lies.
     periods
         When it applies, any of them; None: that cannot be read.
-    questions, place_questions
-        What the file leaves open about this zone, and about where it lies.
+    questions, place_questions, width_questions
+        What the file leaves open about this zone, about where it lies, and about how wide it is about a known place.
     """
 
     id: str
@@ -207,6 +207,7 @@ class Zone:
     periods: tuple[Period, ...] | None = ALWAYS
     questions: tuple[str, ...] = ()
     place_questions: tuple[str, ...] = ()
+    width_questions: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 import base64
 import zlib
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from planning.base.errors import InfeasibleError, InputError
+from planning.base.findings import Severity
+from planning.checks.rules import terrain_in_use, terrain_unknown
 from planning.geo.height_field import HeightField
 from planning.site.file import read_site, site_bytes, write_site
 from planning.site.free_space import free_space
@@ -178,3 +181,27 @@ def test_what_is_put_on_the_ground_is_put_on_the_terrain():
     assert height_at(site, 5.0, 10.0) == pytest.approx(4.0, abs=1e-3)
     assert height_at(site, 1000.0, 0.0) == 0.0
     assert height_at(replace(site, terrain=None), 5.0, 10.0) == 0.0
+
+
+def told(model):
+    """What the check of any plan says of the terrain, by code and place."""
+    return {(finding.code, finding.place): finding for finding in terrain_in_use(SimpleNamespace(site_model=model))}
+
+
+def test_a_site_without_terrain_says_that_its_ground_counts_as_level():
+    (note,) = terrain_unknown(kiosk())
+    assert not list(terrain_unknown(hill_site()))
+    assert note.severity is Severity.NOTE
+    assert "level at 0 m" in note.message
+
+
+def test_terrain_that_does_not_fit_home_and_building_is_a_warning_and_that_of_a_slope_is_none():
+    fits = {("terrain", "")}
+    assert set(told(hill_site(lambda x, y: 0.03 * (y + 30.0)))) == fits
+    off = told(kiosk(terrain=terrain(lambda x, y: 66.9 + 0.0 * x)))
+    assert set(off) == fits | {("terrain-apart", "home"), ("terrain-apart", "building")}
+    assert off["terrain-apart", "home"].severity is Severity.WARNING
+    assert off["terrain-apart", "building"].value == pytest.approx(66.9)
+    assert set(told(kiosk(terrain=terrain(lambda x, y: 7.0 + 0.0 * x, accuracy_m=9.0)))) == fits
+    assert set(told(kiosk(terrain=terrain(lambda x, y: 0.1 * y - 0.6), home_enu_m=(0.0, 4.0, 9.0)))) == fits
+    assert set(told(kiosk(terrain=terrain(lambda x, y: 66.9 + 0.0 * x, use="off")))) == fits

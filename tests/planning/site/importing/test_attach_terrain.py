@@ -9,7 +9,7 @@ from planning.base.errors import InputError
 from planning.geo.solids import Solids
 from planning.site.bundled import ORIGIN
 from planning.site.free_space import free_space
-from planning.site.importing.attach_terrain import TerrainRequest, attach_terrain, without_terrain
+from planning.site.importing.attach_terrain import TerrainRequest, attach_terrain, unknown_accuracy_m, without_terrain
 from planning.site.importing.elevation import HeightOptions
 from planning.site.records import RallyPoint
 from planning.site.terrain import surfaces
@@ -45,7 +45,8 @@ def files(tmp_path_factory):
 
 
 def attached(files, model=None, name="dtm.tif", **request):
-    wanted = {"ground": (files / name,), "options": HeightOptions(vertical="ellipsoid"), **request}
+    ellipsoid = HeightOptions(vertical="ellipsoid")
+    wanted = {"ground": (files / name,), "options": ellipsoid, "accuracy_m": 0.0, **request}
     return attach_terrain(kiosk() if model is None else model, TerrainRequest(**wanted), "kiosk")
 
 
@@ -143,3 +144,70 @@ def test_a_far_site_is_told_which_tile_it_needs(files):
     far = kiosk(origin=replace(ORIGIN, lat_deg=-33.9, lon_deg=151.2))
     with pytest.raises(InputError, match=r"dtm\.tif: has no heights below the airspace of the site.*S34E151"):
         attached(files, far)
+
+
+HIGH = replace(ORIGIN, ellipsoid_height_m=0.0)
+
+
+def filled(folder, surface, **profile):
+    """A file of heights that says of no value that it means none, and a kiosk whose zero lies at 0 m."""
+    place = {"origin": HIGH, "crs": UTM50, "transform": transform_at(HIGH, UTM50), "size": (200, 200)}
+    write_heights(folder / "filled.tif", surface, **place, nodata=None, **profile)
+    return kiosk(origin=HIGH)
+
+
+def zeros_where(hole, height):
+    """A height above the ellipsoid, and exactly zero where `hole` says so: on the raster itself."""
+
+    def rewritten(folder):
+        import rasterio
+
+        with rasterio.open(folder / "filled.tif", "r+") as file:
+            z = file.read(1)
+            rows, columns = np.indices(z.shape)
+            z[:] = height(columns - 100.0, 100.0 - rows)
+            z[hole(columns - 100.0, 100.0 - rows)] = 0.0
+            file.write(z, 1)
+
+    return rewritten
+
+
+def attached_filled(folder, hole, height, **profile):
+    model = filled(folder, lambda x, y: 0.0 * x + 1.0, **profile)
+    zeros_where(hole, height)(folder)
+    return attached(folder, model, "filled.tif")
+
+
+def test_a_hole_of_zeros_in_a_hill_is_not_known_and_said(tmp_path):
+    found = attached_filled(tmp_path, lambda x, y: np.hypot(x - 20.0, y - 20.0) < 8.0, lambda x, y: 66.9 + 0.01 * x)
+    assert any("its zeros count as not known" in note and "filled.tif" in note for note in found.notes)
+    there = surfaces(found.model.site.terrain).ground.heights_m(np.array([[20.0, 20.0], [-20.0, -20.0]]))
+    assert np.isnan(there).tolist() == [True, False]
+
+
+def test_a_file_of_zeros_alone_is_refused(tmp_path):
+    with pytest.raises(InputError, match=r"all its heights below the site are exactly 0 m.*nodata"):
+        attached_filled(tmp_path, lambda x, y: x < 1e9, lambda x, y: 0.0 * x)
+
+
+def test_a_coast_stays_sea_at_zero_and_so_does_a_file_that_says_which_value_means_none(tmp_path):
+    rising = lambda x, y: np.maximum(0.2 * (y + 10.0), 0.0)  # noqa: E731
+    coast = attached_filled(tmp_path, lambda x, y: y < -10.0, rising)
+    assert not np.isnan(surfaces(coast.model.site.terrain).ground.z_m).any()
+    model = filled(tmp_path, lambda x, y: 0.0 * x)
+    zeros_where(lambda x, y: x < 1e9, rising)(tmp_path)
+    with pytest.raises(InputError, match="exactly 0 m"):
+        attached(tmp_path, model, "filled.tif")
+    import rasterio
+
+    with rasterio.open(tmp_path / "filled.tif", "r+") as file:
+        file.nodata = -9999.0
+    assert surfaces(attached(tmp_path, model, "filled.tif").model.site.terrain).ground.z_m.max() < 1.0
+
+
+def test_files_of_unknown_origin_are_not_taken_for_perfect(files):
+    found = attached(files, accuracy_m=None)
+    assert found.model.site.terrain.accuracy_m == 0.6
+    assert any("do not say how good their heights are: 0.6 m" in note for note in found.notes)
+    assert unknown_accuracy_m(30.0) == 9.0
+    assert attached(files, accuracy_m=0.2).model.site.terrain.accuracy_m == 0.2

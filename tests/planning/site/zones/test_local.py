@@ -184,7 +184,7 @@ def test_rings_that_cross_touch_or_enclose_nothing_count_whole_and_ask():
         flat = found(Volume(Outline(local_ring(points)))).near[0]
         assert flat.volumes[0].area.contains(shapely.Point(10.0, 10.0 if len({*points}) == 1 else 0.0))
         assert flat.volumes[0].area.area > 0.9 * math.pi * NARROW_M**2
-        assert "encloses nothing" in flat.questions[0]
+        assert "encloses nothing" in flat.place_questions[0]
 
 
 def test_heights_above_ground_sea_and_ellipsoid_become_local_ones_by_their_closed_forms():

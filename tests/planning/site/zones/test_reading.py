@@ -240,7 +240,31 @@ FEATURE = ed269_feature(ed269_volume(polygon(RING)))
 )
 def test_what_a_file_leaves_open_is_a_question(content):
     zone = only(content)
-    assert zone.questions or zone.place_questions
+    assert zone.questions or zone.place_questions or zone.width_questions
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (changed(FEATURE, restriction=None), "does not say what it restricts (field 'restriction'), so it counts as"),
+        (changed(FEATURE, restriction="MAYBE"), "not known here, 'MAYBE', so it counts as prohibited"),
+        (changed(FEATURE, applicability=[{}]), "the field 'permanent' is missing or empty"),
+        (changed(FEATURE, geometry=[{**FEATURE["geometry"][0], "uomDimensions": ""}]), "height '0 AGL' does not say"),
+        (openair(*openair_ring(RING), upper="high"), "the height 'high' cannot be read, so every height counts"),
+        (aixm(aixm_ring(RING), upper=" "), "gives no upper limit, so it counts at any height"),
+    ],
+)
+def test_questions_say_what_is_missing_and_what_follows(content, words):
+    zone = only(content)
+    assert any(words in question for question in zone.questions), zone.questions
+    assert not any("None" in question or "''" in question for question in zone.questions)
+
+
+def test_a_lost_type_of_openair_leaves_a_zone_that_asks():
+    first, _ = zones_of(openair(*openair_ring(RING)).replace(b"AC P\n", b"") + openair(*openair_ring(RING)), FILE).zones
+    assert first.restriction is Restriction.UNKNOWN
+    assert first.volumes
+    assert first.place_questions
 
 
 def test_zones_of_one_name_have_identifiers_of_their_own():
