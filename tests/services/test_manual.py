@@ -103,7 +103,7 @@ def test_what_only_the_trade_calls_so_has_a_term_beside_its_field_and_leads_to_a
     words = terms_by_word(str)
     plain = {"Wind", "Take-off mass in kg", "Height by", "Arc tolerance"}
     plain |= {"People from a raster", "Raster counts people", "Ground from a raster"}
-    asked = {each.label for kind in (GroundRiskRequest, CameraSettings) for each in declared(kind).values()}
+    asked = {each.parameter.label for kind in (GroundRiskRequest, CameraSettings) for each in declared(kind).values()}
     assert {label for label in asked - plain if label.casefold() not in words} == set()
     for term in TERMS:
         page, _, heading = term.page.partition("#")

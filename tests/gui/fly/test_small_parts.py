@@ -6,7 +6,7 @@ from functools import partial
 import pytest
 from PySide6.QtCore import QPoint
 
-from groundstation.gui.fly.flight_settings_page import FlightSettingsPage
+from groundstation.gui.fly.flight_settings_page import SettingsPage
 from groundstation.gui.widgets.terms import TermLabel
 from groundstation.services.fly.options import USUAL_ADDRESS, ConnectionChoice, FlightSettings, LinkKind
 from groundstation.services.jobs.runner import JobRunner
@@ -231,7 +231,7 @@ def _is_seen(widget, area):
 
 
 def test_terms_of_the_settings_of_a_flight_say_what_they_mean(application):
-    page = FlightSettingsPage()
+    page = SettingsPage()
     signs = {label.text() for label in page.findChildren(TermLabel)}
     assert {"Operator number", "Serial number", "RTK corrections"} <= signs
     page.close()
