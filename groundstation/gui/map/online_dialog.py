@@ -59,8 +59,8 @@ class OnlineMapDialog(QDialog):
         self._policy = QLabel(
             self.tr(
                 "OpenStreetMap gives its tiles away, with no promise, on <a href='{0}'>conditions</a> that Reflight "
-                "keeps: a name in each request, tiles kept for a week, only what is looked at, its licence on the map. Do not "
-                "load areas in advance."
+                "keeps: a name in each request, tiles kept for a week, only what is looked at, its licence on the map. "
+                "Do not load areas in advance."
             ).format(OSM_POLICY)
         )
         self._policy.setWordWrap(True)
