@@ -107,6 +107,15 @@ TERMS = (
         (say("Above sea level"), say("Heights are"), say("Above take-off")),
     ),
     Term(
+        say("Geoid"),
+        say(
+            "The level of the sea, carried on below the land. Heights above sea level count from it; it lies up to "
+            "100 m above or below the ellipsoid. EGM96 and EGM2008 are grids of it."
+        ),
+        "decisions/heights.md",
+        (say("Grid of the geoid"), say("Heights are above")),
+    ),
+    Term(
         say("Site origin"),
         say("The place on earth from which the site counts metres east, north and up."),
         "guide/site.md",
@@ -146,9 +155,135 @@ TERMS = (
     ),
     Term(
         say("RTK"),
-        say("Corrections by which GNSS knows its place to centimetres instead of metres."),
-        "concepts/flying.md",
-        (say("GNSS"),),
+        say(
+            "Corrections by which GNSS knows its place to centimetres instead of metres. They come from a base "
+            "station, over the network by NTRIP: a caster sends those of one mount point."
+        ),
+        "guide/fly.md#rtk-corrections",
+        (say("GNSS"), say("RTK corrections"), say("NTRIP")),
+    ),
+    Term(
+        say("Remote ID"),
+        say(
+            "What the aircraft broadcasts by radio of itself, its place and its operator, so that others nearby can "
+            "tell who flies. It needs a serial number."
+        ),
+        "guide/fly.md#remote-id",
+        (say("Serial number"),),
+    ),
+    Term(
+        say("Operator number"),
+        say(
+            "The number under which the authority registered the operator. Remote ID broadcasts it without its secret "
+            "last three characters, which prove that it was typed right."
+        ),
+        "guide/fly.md#remote-id",
+    ),
+    Term(
+        say("Geofence"),
+        say(
+            "A border that the autopilot itself keeps, link or none: where the aircraft would leave it, it returns, "
+            "lands or stops."
+        ),
+        "reference/autopilots.md",
+        (say("Geofence on board"), say("Geofence of others")),
+    ),
+    Term(
+        say("Return height"),
+        say(
+            "The height above take-off at which the aircraft flies straight home when it returns by itself. It must "
+            "clear everything that may stand below."
+        ),
+        "reference/autopilots.md",
+    ),
+    Term(
+        say("Geo-zone"),
+        say(
+            "An area in which the authority forbids flying or asks for an authorisation, within heights and times. Its "
+            "file comes from the publisher."
+        ),
+        "concepts/zones.md",
+        (say("Geo-zones"), say("File of geo-zones")),
+    ),
+    Term(
+        say("Flight geography"),
+        say("SORA: the space in which the flight is meant to stay."),
+        "guide/mission.md#ground-risk",
+    ),
+    Term(
+        say("Contingency volume"),
+        say(
+            "SORA: the space around the flight geography in which a flight that left it is brought back. Reaction, "
+            "braking and errors of the place make it wide."
+        ),
+        "guide/mission.md#ground-risk",
+        (say("Reaction"), say("Braking tilt"), say("GNSS error"), say("Position hold error"), say("Map error")),
+    ),
+    Term(
+        say("Ground-risk buffer"),
+        say("SORA: the ground beyond the contingency volume that the aircraft may hit when it falls out of that."),
+        "guide/mission.md#ground-risk",
+        (say("Buffer"),),
+    ),
+    Term(
+        say("Ground risk class (iGRC)"),
+        say(
+            "SORA: 1 to 10 by who is below, and by size and speed of the aircraft, before anything lessens the risk; "
+            "M1 and M2 lower it to the final class."
+        ),
+        "guide/mission.md#ground-risk",
+        (say("People below"), say("Largest dimension"), say("Full speed")),
+    ),
+    Term(
+        say("M1 and M2"),
+        say(
+            "SORA: what lessens the ground risk. M1: fewer people are exposed, by shelter, place and time, or an "
+            "observer. M2: the impact is softer."
+        ),
+        "guide/mission.md#ground-risk",
+        (say("M1(A) sheltering"), say("M1(B) restrictions"), say("M1(C) ground observation"), say("M2 softer impact")),
+    ),
+    Term(
+        say("Exposure"),
+        say(
+            "How much light a photo gets, by shutter time, aperture and ISO. A model needs the same for all photos of "
+            "a sortie."
+        ),
+        "concepts/photos.md#camera-settings",
+        (say("Exposure compensation"),),
+    ),
+    Term(
+        say("Shutter time"),
+        say(
+            "How long the sensor gathers light. Short times blur less in flight. A mechanical shutter takes the "
+            "picture at once; an electronic one line by line, which skews what is passed."
+        ),
+        "concepts/photos.md#camera-settings",
+        (say("Shutter"),),
+    ),
+    Term(
+        say("Aperture"),
+        say("Width of the lens as an f-number. A larger number lets less light in, and is sharp over more distances."),
+        "concepts/photos.md#camera-settings",
+    ),
+    Term(
+        say("ISO"),
+        say("Sensitivity of the sensor. Twice the number needs half the light, and has more noise."),
+        "concepts/photos.md#camera-settings",
+    ),
+    Term(
+        say("White balance"),
+        say(
+            "Which light counts as white. Fixed, as at 5500 K for daylight, all photos of a sortie show a colour alike."
+        ),
+        "concepts/photos.md#camera-settings",
+        (say("Colour temperature"),),
+    ),
+    Term(
+        say("Focus"),
+        say("The distance that is sharpest. It is locked for a sortie, for glass misleads an automatic one."),
+        "concepts/photos.md#camera-settings",
+        (say("Focus distance"),),
     ),
     Term(
         say("Pose"),
@@ -166,6 +301,15 @@ TERMS = (
         say("A small blurred ellipse in space. A model is made of many, and of the light that panes mirror."),
         "concepts/splats.md",
         (say("Layer"),),
+    ),
+    Term(
+        say("Radiance grid"),
+        say(
+            "What panes mirror, learned as a scene behind the glass: near things move in it as real ones do. It is "
+            "stored in cells of a grid."
+        ),
+        "decisions/radiance-grid.md",
+        (say("Mirrored light is learned as"),),
     ),
     Term(
         say("Effects"),

@@ -46,6 +46,14 @@ def with_window_labels(text: str, labels: Mapping[str, str], quoted: str = "“{
     return _OPTION.sub(replaced, text)
 
 
+_OPTION_IN_BRACKETS = re.compile(rf" \({_OPTION.pattern}\)".replace("?P<option>", "?:").replace("?P<value>", "?:"))
+
+
+def on_paper(text: str) -> str:
+    """A message without the options in brackets that say how it is typed: nobody types on paper."""
+    return _OPTION_IN_BRACKETS.sub("", text)
+
+
 Translate = Callable[[str], str]
 """A template in the user's language; the template itself where there is no translation."""
 

@@ -1,6 +1,9 @@
 """`brief` writes one page, and refuses what it cannot write."""
 
 import json
+import re
+
+import pytest
 
 
 def test_brief_is_one_html_page_with_its_pictures(reflight, pane, tmp_path):
@@ -54,3 +57,13 @@ def test_ground_risk_stands_in_the_brief_where_something_of_it_is_stated(refligh
     assert "none: controlled ground area" in out.read_text("utf-8")
     wrong = reflight("brief", pane / "plan.json", pane / "site.json", "-o", tmp_path / "x.html", "--population", "few")
     assert "--population: expected one of" in wrong.error
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_paper_names_no_option_to_type_and_each_sortie_has_its_distance(reflight, pane, tmp_path, language):
+    out = tmp_path / "brief.html"
+    assert reflight("--language", language, "brief", pane / "plan.json", pane / "site.json", "-o", out).status == 0
+    page = re.sub(r'"data:[^"]*"', "", out.read_text("utf-8"))
+    assert not re.search(r"(?<![\w-])--[a-z]", page)
+    # What was measured of a sortie is found by its name, whatever the language.
+    assert not {"not measured", "nicht gemessen"} & set(re.split(r"[<>]", page))

@@ -9,6 +9,7 @@ from PySide6.QtCore import QCoreApplication, QEvent, QPoint, QPointF, Qt
 from PySide6.QtGui import QMouseEvent, QWheelEvent
 from PySide6.QtTest import QTest
 
+from groundstation.gui.view3d import scene_picture
 from groundstation.gui.view3d.drawables import Drawable, Layer
 from groundstation.gui.view3d.orbit import Orbit
 from groundstation.gui.view3d.paint import ColourScale, flat
@@ -22,6 +23,7 @@ from planning.site.bundled import canyon, office, roof, tower
 from planning.site.importing.importer import import_site
 from planning.site.importing.options import ImportOptions
 from tests.benchmarks.view3d import large_plan
+from tests.gui.driving import turn_until
 
 SIZE = (900, 600)
 
@@ -743,9 +745,8 @@ def test_surroundings_are_drawn_with_their_pictures_only_while_their_layer_is_sh
     view.surroundingsWanted.connect(wanted.append)
     model = office()
     view.set_site(model)
-    assert not wanted, "nobody looks at them where a processor draws"
-    view.set_layer_visible(Layer.SURROUNDINGS, True)
     assert wanted == [model]
+    view.set_layer_visible(Layer.SURROUNDINGS, False)
     before = picture(application, view)
     # A wall before the facade, its lower half green and its upper half red.
     stripes = np.zeros((8, 8, 3), np.uint8)
@@ -755,6 +756,7 @@ def test_surroundings_are_drawn_with_their_pictures_only_while_their_layer_is_sh
     uv = np.array([[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]], np.float32)
     white = np.full((2, 3), 255, np.uint8)
     view.set_surfaces([Surface(Part.SURROUNDINGS, np.array([[a, b, c], [a, c, d]]), white, uv, stripes)])
+    view.set_layer_visible(Layer.SURROUNDINGS, True)
     shown = picture(application, view)
     is_red = (shown[..., 0] > 120) & (shown[..., 1] < 60) & (shown[..., 2] < 60)
     is_green = (shown[..., 1] > 120) & (shown[..., 0] < 60) & (shown[..., 2] < 60)
@@ -781,7 +783,6 @@ def test_photos_on_panels_are_asked_for_when_there_are_some_and_lie_before_the_p
     wanted = []
     view.photosWanted.connect(lambda: wanted.append(True))
     view.set_site(office())
-    view.set_layer_visible(Layer.PHOTOS, True)
     assert not wanted, "there are no photos yet"
     view.offer_photos(True)
     assert wanted == [True]
@@ -792,6 +793,10 @@ def test_photos_on_panels_are_asked_for_when_there_are_some_and_lie_before_the_p
     view.look_at_all()
     shown = picture(application, view)
     assert ((shown[..., 0] > 100) & (shown[..., 1:] < 30).all(axis=2)).sum() > 10_000
+    view.set_panel_values(ColourScale("GSD", "mm", 0.0, 1.0), np.zeros(len(corners)))
+    shown = picture(application, view)
+    assert ((shown[..., 0] > 100) & (shown[..., 1:] < 30).all(axis=2)).sum() == 0, "values are not hidden by photos"
+    view.set_panel_values(None)
     view.offer_photos(False)
     shown = picture(application, view)
     assert ((shown[..., 0] > 100) & (shown[..., 1:] < 30).all(axis=2)).sum() == 0
@@ -809,3 +814,63 @@ def test_first_frames_have_few_layers_and_pictures_that_are_taken_all(applicatio
         application.processEvents()
         turns += 1
     assert differs(whole, picture(application, view)) == 0
+
+
+@pytest.mark.parametrize("is_slow", [False, True])
+def test_textured_layers_are_drawn_in_motion_only_where_frames_were_measured_to_be_fast(application, view, is_slow):
+    from groundstation.services.scenes.surfaces import Part, Surface
+
+    view.set_site(office())
+    red = np.array([[220, 0, 0]], np.uint8)
+    triangle = np.array([[(-15.0, -5.0, 0.0), (15.0, -5.0, 0.0), (0.0, -5.0, 40.0)]])
+    view.set_surfaces([Surface(Part.SURROUNDINGS, triangle, red)])
+    picture(application, view)
+    view._begin(True)
+    canvas = view.canvas()
+    canvas.frame_times_s = [9.0, *[0.2 if is_slow else 0.01] * 5]
+    view.turn_by_hand(3.0, 0.0)
+    assert view.textured_frame_s() == (0.2 if is_slow else 0.01), "the first frame, which compiles, does not count"
+    assert (Layer.SURROUNDINGS in canvas._hidden) == is_slow
+    view._layers_button.click()
+    (row,) = (row for row in view._panel.list.value() if row.key == Layer.SURROUNDINGS.value)
+    assert row.note.startswith("drawn at rest only: a frame takes 200 ms" if is_slow else "drawn always: a frame")
+    turn_until(application, lambda: not view._is_moving)
+    assert Layer.SURROUNDINGS not in canvas._hidden
+
+
+def test_frames_of_a_turn_are_measured_where_a_processor_draws(application, view):
+    view.set_site(office())
+    picture(application, view)
+    view._begin(True)
+    for _ in range(12):
+        painted = view.canvas().n_painted
+        view.turn_by_hand(3.0, 0.0)
+        turn_until(application, lambda painted=painted: view.canvas().n_painted > painted)
+    assert 0.0 < view.textured_frame_s() < 10.0
+
+
+def test_the_aircraft_of_the_slider_is_the_one_of_a_flight_and_turns_with_its_heading(view, plan):
+    view.set_site(office())
+    view.set_plan(plan)
+    place = np.array(plan.viewpoints[0].position_enu_m)
+    found = []
+    for heading in (0.0, 1.0):
+        view.set_flown(scene_picture.FlownPose(0, place, heading, -0.2))
+        drawn = view._flown_drawables()
+        assert len(drawn) > 5, "pyramid, propellers, arms, body, nose"
+        found.append(np.concatenate([each.points_enu_m for each in drawn[1:]]))
+    assert not np.allclose(found[0], found[1])
+
+
+def test_routes_viewpoints_and_pyramids_fade_beside_their_sorties(view, plan):
+    view.set_site(office())
+    view.set_plan(plan)
+    view._layers_button.click()
+    rows = {row.key: row for row in view._panel.list.value()}
+    for layer in (Layer.ROUTES, Layer.VIEWPOINTS, Layer.FRUSTA):
+        assert rows[layer.value].can_fade
+        view._panel.list.boxes(layer.value)[1].setValue(50)
+    view.set_sortie(1, True, 0.5)
+    opacities = view.canvas()._opacities
+    assert opacities[Layer.ROUTES, 0] == opacities[Layer.VIEWPOINTS, 0] == 0.25
+    assert opacities[Layer.FRUSTA] == 0.5

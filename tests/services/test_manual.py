@@ -17,6 +17,9 @@ from groundstation.services.manual import (
     page_part,
     title_of,
 )
+from planning.base.parameters import declared
+from planning.insight.ground_risk_request import GroundRiskRequest
+from planning.parameters import CameraSettings
 
 LINK = re.compile(r"(?<!!)\[[^\]]*\]\(([^)\s]+)\)")
 
@@ -94,3 +97,15 @@ def test_each_term_is_said_once_and_its_page_exists():
     for term in TERMS:
         assert (CHECKOUT / term.page.partition("#")[0]).is_file(), term.name
         assert len(term.says.split()) <= 35
+
+
+def test_what_only_the_trade_calls_so_has_a_term_beside_its_field_and_leads_to_a_heading_that_is_there():
+    words = terms_by_word(str)
+    plain = {"Wind", "Take-off mass in kg", "Height by", "Arc tolerance"}
+    plain |= {"People from a raster", "Raster counts people", "Ground from a raster"}
+    asked = {each.parameter.label for kind in (GroundRiskRequest, CameraSettings) for each in declared(kind).values()}
+    assert {label for label in asked - plain if label.casefold() not in words} == set()
+    for term in TERMS:
+        page, _, heading = term.page.partition("#")
+        headings = re.findall(r"^#+ (.*)$", (CHECKOUT / page).read_text("utf-8"), re.MULTILINE)
+        assert not heading or heading in map(anchor, headings), term.name

@@ -41,11 +41,10 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write the brief; returns the exit status."""
-    from dataclasses import replace
     from datetime import date
 
     from groundstation.services.jobs.runner import JobContext
-    from groundstation.services.messages import localized, translation
+    from groundstation.services.messages import localized, on_paper, translation
     from groundstation.services.mission.brief import flight_brief
     from groundstation.services.mission.brief_html import brief_html, brief_pictures, sources_in_page
     from groundstation.services.mission.proof import proof_of_files
@@ -72,22 +71,17 @@ def run(options: argparse.Namespace) -> int:
     units, day = UnitSystem(options.units), flight_day(options)
     words, titles = translation(options.language), translation(options.language, "Brief")
 
+    def localize(text: str) -> str:
+        return on_paper(localized(text, words, units))
+
     def work(context: JobContext) -> tuple[str, Readiness, int]:
         found = preflight(plan, site_model, day, context)
         proved = proof_of_files(options.plan, options.site)
         today = date.today().isoformat()
-        findings = tuple(
-            replace(each, message=localized(each.message, words, units), place=localized(each.place, words, units))
-            for each in (*found.findings, *([] if proved is None else [proved]))
-        )
+        findings = (*found.findings, *([] if proved is None else [proved]))
         brief = flight_brief(
             site_model, plan, findings, today, options.plan.name, day=day, sun=found.sun, ground_risk=risk
-        )
-
-        def localize(text: str) -> str:
-            return localized(text, words, units)
-
-        brief = brief.in_words(localize)
+        ).in_words(localize)
         sources = sources_in_page(brief_pictures(site_model, plan, units, titles, found.sun, localize))
         is_letter = None if options.paper is None else options.paper == "letter"
         return brief_html(brief, units, sources, titles, is_letter=is_letter), brief.readiness, len(brief.findings)

@@ -12,7 +12,7 @@ from PySide6.QtCore import QCoreApplication, QLibraryInfo, QLocale, QTranslator
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QApplication
 
-from groundstation.services.messages import localized, with_window_labels
+from groundstation.services.messages import localized, on_paper, with_window_labels
 from groundstation.services.settings import Language
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding
@@ -54,12 +54,6 @@ IN_WINDOW = {
     ),
     "expected a folder of panels files (*.json), as 'segment' writes them; found none": QT_TRANSLATE_NOOP(
         "Sentences", "expected a folder of panels files (*.json); found none"
-    ),
-    "{0} of the {1} sections that flights can cover are covered ({2}): plan with more --views, or a --coverage": (
-        QT_TRANSLATE_NOOP(
-            "Sentences",
-            "{0} of the {1} sections that flights can cover are covered ({2}): plan more views, or a share of coverage",
-        )
     ),
     "--components: there is no component '{0}'; known are {1}": QT_TRANSLATE_NOOP(
         "Sentences", "there is no part '{0}'; known are {1}"
@@ -245,7 +239,7 @@ OPTION_FIELDS = {
     "--height-reference": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Heights are")),
     "--home": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Home, in the Site tab")),
     "--name": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Name of the site")),
-    "--origin": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Zero point on earth")),
+    "--origin": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Site origin")),
     "--panel-grid": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Facade grid")),
     "--rows": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Rows")),
     "--units": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Unit of lengths")),
@@ -452,6 +446,11 @@ class Translations:
 def translated(text: str, units: UnitSystem) -> str:
     """A message, stage or name from below in the user's language and units; as it is where it is not known."""
     return with_fields(localized(text, _in_language, units))
+
+
+def printed(text: str, units: UnitSystem) -> str:
+    """A message as it stands on paper, in the user's language and units."""
+    return with_fields(on_paper(localized(text, _in_language, units)))
 
 
 def with_fields(text: str) -> str:

@@ -15,6 +15,7 @@ from groundstation.gui.fly.joystick_controller import JoystickBox
 from groundstation.gui.widgets.inputs import Form
 from groundstation.gui.widgets.scrolling import LEAST_SCALE, fitted, scroll_to
 from groundstation.gui.widgets.tab_order import set_enabled
+from groundstation.gui.widgets.terms import label_of
 from groundstation.gui.widgets.value_boxes import FileBox, muted
 from groundstation.services.fly.options import FlightSettings
 from groundstation.services.fly.video import typed_video
@@ -295,7 +296,7 @@ class SettingsPage(QWidget):
 
 
 def _add_below(form: Form, title: str, field: QWidget) -> None:
-    label = QLabel(title)
+    label = label_of(title, field)
     label.setBuddy(field)
     form.addRow(label)
     form.addRow(field)

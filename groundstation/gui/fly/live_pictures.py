@@ -13,10 +13,10 @@ from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, QSize, Qt, QTimer, 
 from PySide6.QtGui import QColor, QHelpEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QToolTip, QWidget
 
-from groundstation.gui.fly.aircraft_shape import aircraft_drawables, paint_aircraft
 from groundstation.gui.fly.live_aircraft import ActiveFlight
 from groundstation.gui.map.map_view import MapView
 from groundstation.gui.shared_view import SharedView, SharedViewPage
+from groundstation.gui.view3d.aircraft_shape import aircraft_drawables, paint_aircraft, shown_span_m
 from groundstation.gui.view3d.drawables import ON_TOP, Drawable, Label, Layer, frusta, joined, polyline
 from groundstation.gui.view3d.paint import ColourScale, flat
 from groundstation.gui.view3d.scene_view import SceneView
@@ -372,9 +372,6 @@ def _world(origin: Origin, points_enu_m: Array) -> Array:
 
 LEVEL = Angles(0.0, 0.0, 0.0)
 
-LEAST_AIRCRAFT_M, AIRCRAFT_ON_SCREEN_PX = 1.0, 46.0
-"""Span of the aircraft as it is drawn: larger than it is, so that it is found in a view of the whole site."""
-
 TRACK_PX, NEXT_PX, PICTURE_PX, FOOTPRINT_PX = 4.0, 3.0, 1.0, 3.0
 DOT_PX = {
     ViewState.TO_COME: 5.0,
@@ -411,7 +408,7 @@ class LiveScene:
         labels = [] if own is None or not name else [_label(name, own.position_enu_m, look.accent)]
         for number, other in enumerate(others):
             place = np.array(other.motion.position_enu_m)
-            span_m = max(LEAST_AIRCRAFT_M, AIRCRAFT_ON_SCREEN_PX * self._scene.metres_per_px(place))
+            span_m = shown_span_m(self._scene.metres_per_px(place))
             drawn = aircraft_drawables(place, other.attitude, other.camera, span_m, look)
             canvas.draw(f"live-other-{number}", [*_track(other.track_enu_m, look.muted), *drawn])
             labels.append(_label(other.name, other.motion.position_enu_m, look.muted))
@@ -455,7 +452,7 @@ class LiveScene:
         place = np.array(state.motion.value.position_enu_m)
         attitude = LEVEL if state.attitude is None else state.attitude.value
         pointing = state.camera
-        span_m = max(LEAST_AIRCRAFT_M, AIRCRAFT_ON_SCREEN_PX * self._scene.metres_per_px(place))
+        span_m = shown_span_m(self._scene.metres_per_px(place))
         towards = None if pointing is None else pointing.value
         canvas.draw("live-aircraft", aircraft_drawables(place, attitude, towards, span_m, look))
         canvas.draw("live-next", () if next_enu_m is None else _leg(place, next_enu_m, look))

@@ -143,6 +143,13 @@ class MapLayers(QObject):
         """An overlay by its key."""
         return self._overlays[key].overlay
 
+    def swap_axes(self, key: str) -> None:
+        """Exchange latitudes and longitudes of an overlay; its file stays as it is."""
+        shown = self._overlays[key]
+        overlay = shown.overlay.swapped()
+        self._overlays[key] = replace(shown, overlay=overlay, extent=overlay.extent())
+        self.shapesChanged.emit()
+
     def extent(self) -> NDArray[np.float64] | None:
         """Points between which all overlays lie, shape (n, 2); None without any."""
         found = [shown.extent for shown in self._overlays.values()]

@@ -36,17 +36,19 @@ from groundstation.gui.map.map_paint import (
 from groundstation.gui.map.online_dialog import OnlineMapDialog
 from groundstation.gui.map.viewport import MapCanvas, Viewport
 from groundstation.gui.widgets.layer_list import LayerPanel
-from groundstation.gui.widgets.questions import choose_file
+from groundstation.gui.widgets.questions import agrees, choose_file
 from groundstation.gui.widgets.theme import colours, zone_colour
 from groundstation.services.map.coordinates import parse_place
 from groundstation.services.map.online import OnlineMap
-from groundstation.services.map.overlays import OVERLAY_SUFFIXES
+from groundstation.services.map.overlays import FAR_M, OVERLAY_SUFFIXES, distance_m
 from groundstation.services.map.shapes import Area, PlanShapes, SiteShapes, airspace_outline, plan_shapes, site_shapes
 from groundstation.services.map.web_mercator import MAX_LAT_DEG, geodetic_from_world, world_from_geodetic
 from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.settings import data_folder
 from groundstation.services.units import UnitSystem
 from planning.base.errors import InputError
+from planning.base.messages import say
+from planning.geo.frames import Origin
 from planning.plan import Plan
 from planning.site.records import SiteModel
 from planning.site.zones.records import RESTRICTIONS, Restriction
@@ -609,13 +611,47 @@ class MapView(MapCanvas):
         self.onlineChanged.emit(online)
 
     def _bring_in_overlay(self, key: str) -> None:
-        """Show where a new overlay lies, where nothing of it is in sight."""
+        """Show where a new overlay lies, where nothing of it is in sight; far from the site only after a question."""
+        if self._model is not None and not self._is_placed(key, self._model.site.origin):
+            return
         extent = self.layers.overlay(key).extent()
         points = self._viewport.screen(extent)
         size = (self._viewport.width_px, self._viewport.height_px)
         is_in_sight = (points.max(axis=0) >= 0.0).all() and (points.min(axis=0) <= size).all()
         if not is_in_sight or self._model is None:
             self.set_viewport(self._viewport.fitted(extent, MARGIN_PX))
+
+    def _is_placed(self, key: str, site: Origin) -> bool:
+        """Whether an overlay lies at the site, as it is or with its axes swapped once the user says so."""
+        overlay = self.layers.overlay(key)
+        away_m = distance_m(overlay.extent(), site.lat_deg, site.lon_deg)
+        if overlay.is_swapped:
+            text = self.tr(
+                "In {0} latitudes stand where longitudes have to: as it is, it has no place on earth. Show it with "
+                "both swapped?"
+            ).format(overlay.name)
+            if not agrees(self, self.tr("Swapped coordinates?"), text):
+                self.layers.remove(key)
+                return False
+        elif away_m > FAR_M and overlay.picture is None:
+            swapped_m = distance_m(overlay.swapped().extent(), site.lat_deg, site.lon_deg)
+            text = self.tr(
+                "{0} lies {1} km from the site. With latitude and longitude swapped it lies at the site. Swap them on "
+                "the map? The file stays as it is."
+            ).format(overlay.name, round(away_m / 1e3))
+            if swapped_m <= FAR_M and agrees(self, self.tr("Swapped coordinates?"), text):
+                self.layers.swap_axes(key)
+                return True
+        if away_m > FAR_M:
+            self._refuse(
+                say(
+                    "overlay {} lies {:.0f} km from the site, and the map stays where it is; remove it in Layers where "
+                    "it is the wrong file",
+                    overlay.name,
+                    away_m / 1e3,
+                )
+            )
+        return away_m <= FAR_M
 
     def _has_ground(self) -> bool:
         """Whether a map lies under what is in sight."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 from PySide6.QtCore import QCoreApplication, QDate, QLocale, QMarginsF, QRectF, QSizeF, Qt, QUrl
@@ -31,7 +30,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.application.translate import QT_TRANSLATE_NOOP, translated, translated_finding
+from groundstation.gui.application.translate import QT_TRANSLATE_NOOP, printed, translated
 from groundstation.gui.map.map_paint import (
     paint_landings,
     paint_north,
@@ -357,11 +356,8 @@ class BriefDialog(QDialog):
         found = flight_brief(
             site_model, plan, checked.findings, today, title, day=checked.day, sun=checked.sun, ground_risk=ground_risk
         )
-        translated_findings = tuple(translated_finding(finding, self._units) for finding in found.findings)
         self._sun = checked.sun
-        found = found.in_words(lambda line: translated(line, self._units))
-        zones = tuple(translated_finding(finding, self._units) for finding in found.zones)
-        self._brief = replace(found, findings=translated_findings, zones=zones)
+        self._brief = found.in_words(lambda line: printed(line, self._units))
         self._page, self._paper = QTextBrowser(), ChoiceBox()
         # Paper is white in every theme.
         self._page.setStyleSheet("QTextBrowser { background: #ffffff; color: #000000; }")

@@ -459,7 +459,7 @@ class ReconstructPage(GradualTab):
     def _phase_words(self, stage: str) -> str:
         controller = self.controller
         if controller.phase is Phase.ENDING:
-            return self.tr("Breaking off; the state is being kept ...")
+            return self.tr("Cancelling; the state is being kept ...")
         if controller.phase is Phase.COOLING_DOWN and controller.training.stepped is None:
             return self.tr("Stops as soon as there is a model: {0}").format(stage)
         if controller.phase is Phase.COOLING_DOWN:

@@ -297,7 +297,7 @@ class GridController(QObject):
             if self._form.value() == request and self._context.document.site is model and not self._form.isHidden():
                 self._show_result(model, result)
 
-        self._context.start(self.tr("Check the panel grid"), lambda _context: checked_grid(model, request), checked)
+        self._context.start(self.tr("Check the facade grid"), lambda _context: checked_grid(model, request), checked)
 
     def _show_result(self, base: SiteModel, result: AddedGrid | InputError) -> None:
         if isinstance(result, InputError):
@@ -320,7 +320,7 @@ class GridController(QObject):
             return
         self._leave()
         self._editor.apply(
-            self.tr("Add panel grid {0}").format(added.facade_id),
+            self.tr("Add facade grid {0}").format(added.facade_id),
             lambda _model: added.model,
             Item(ItemKind.FACADE, added.facade_id),
         )

@@ -98,7 +98,7 @@ class ImportForm(QWidget):
         self._crs.setPlaceholderText("EPSG:25832")
         self._unit = _combo((name, name) for name in UNITS_M)
         self._up = _combo((("", self.tr("As usual for the format")), ("z", "z"), ("y", "y")))
-        places = ((ZERO_POINT, self.tr("Zero point on earth")), (SYSTEM, self.tr("Coordinate system")))
+        places = ((ZERO_POINT, self.tr("Site origin")), (SYSTEM, self.tr("Coordinate system")))
         self._place = _combo(places if is_mesh else ((FILE_SAYS, self.tr("As the file says")), *places))
         self._origin = OriginBox(units)
         self._has_origin = False
@@ -267,7 +267,7 @@ def place_text(origin: Origin, units: UnitSystem) -> str:
 def _panels_text(summary: SiteSummary, units: UnitSystem) -> str:
     if summary.n_panels == 0:
         return QCoreApplication.translate(
-            "ImportTexts", "No panels yet: find them in photos after the import, or pick a panel grid here."
+            "ImportTexts", "No panels yet: find them in photos after the import, or pick a facade grid here."
         )
     listed = ", ".join(f"{facade.id} {facade.n_panels}" for facade in summary.facades[:MAX_LISTED])
     if len(summary.facades) > MAX_LISTED:
@@ -489,7 +489,7 @@ class ImportDialog(QDialog):
                 good = self.tr("The panels lie on the building and look outwards.")
                 self.grid.show_state("\n".join(map(self._context.localized, result)) or good, is_good=True)
 
-        self._context.start(self.tr("Check the panel grid"), work, checked)
+        self._context.start(self.tr("Check the facade grid"), work, checked)
 
     def _use_grid(self) -> None:
         request = self.grid.value()

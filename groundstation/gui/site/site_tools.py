@@ -113,7 +113,7 @@ class SiteTools(QWidget):
             ),
             (SiteTool.NO_FLY, self.tr("No-fly zone"), self.tr("Draw a zone that must not be entered on the ground")),
             (SiteTool.BOX, self.tr("Obstacle box"), self.tr("Draw a box: two corners on the ground, then the height")),
-            (SiteTool.ORIGIN, self.tr("Zero on map"), self.tr("Click on the map where the site's zero lies")),
+            (SiteTool.ORIGIN, self.tr("Site origin"), self.tr("Click on the map where the site origin lies")),
             (SiteTool.AIRSPACE, self.tr("Airspace"), self.tr("Draw the box in which the aircraft must stay")),
         )
 
@@ -213,7 +213,7 @@ class SiteTools(QWidget):
         hints = {
             SiteTool.HOME: self.tr("Click where the aircraft takes off and lands. Esc cancels."),
             SiteTool.RALLY: self.tr("Click where the aircraft may land when it returns. Esc cancels."),
-            SiteTool.ORIGIN: self.tr("Click where the site's zero lies: all of the site moves there. Esc cancels."),
+            SiteTool.ORIGIN: self.tr("Click where the site origin lies: all of the site moves there. Esc cancels."),
         }
         self._map.start_pick(hints[tool])
         self._set_active(tool)
@@ -239,7 +239,7 @@ class SiteTools(QWidget):
             )
 
     def _move_origin(self, lat_deg: float, lon_deg: float) -> None:
-        """Move the site's zero; its height above sea level stays, for a map has none."""
+        """Move the site origin; its height above sea level stays, for a map has none."""
 
         def edit(model: SiteModel) -> SiteModel:
             height_m = height_above_sea_m(model.site.origin)

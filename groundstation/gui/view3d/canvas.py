@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
+from time import perf_counter
 
 import numpy as np
 import pyvista as pv
@@ -109,6 +110,11 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
     Multi-sampling, lamps and order-independent transparency are off: each costs a processor that draws in place of a
     graphics card more than the rest of the picture.
 
+    Attributes
+    ----------
+    frame_times_s
+        Grows by whole frames of a view that moves, where a processor draws, and somebody put a list here.
+
     Signals
     -------
     started(bool)
@@ -136,6 +142,7 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
         # What is drawn for the first time is compiled for it, 70 ms in all: first frames have few layers.
         self._n_layers = 0
         self.n_painted = 0
+        self.frame_times_s: list[float] | None = None
         self.is_open = True
 
     def close(self) -> None:
@@ -264,7 +271,13 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
         if self._is_detail_due and self.is_open:
             self._is_detail_due = False
             self._show_detail()
+        is_whole = self._n_layers >= len(self._drawn)
+        is_timed = self.frame_times_s is not None and is_whole and not self.renderer.GetUseFXAA()
+        started_s = perf_counter()
         super().paintGL()
+        if is_timed and self.frame_times_s is not None:
+            self.ren_win.WaitForCompletion()
+            self.frame_times_s.append(perf_counter() - started_s)
         if self._n_layers < len(self._drawn) and self.is_open:
             self._n_layers = 2 * self._n_layers + 1
             QTimer.singleShot(0, self, self._detail_changed)

@@ -17,6 +17,7 @@ from PySide6.QtCore import QEvent, QMargins, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
+from groundstation.gui.view3d.aircraft_shape import aircraft_drawables, shown_span_m
 from groundstation.gui.view3d.canvas import Canvas, image_array
 from groundstation.gui.view3d.drawables import (
     ON_TOP,
@@ -56,6 +57,7 @@ from groundstation.gui.widgets.theme import colours
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.scenes.surfaces import Part, Surface
 from groundstation.services.units import UnitSystem
+from groundstation.vehicle.state import Angles
 from planning.coverage.sections import PanelFrames, SectionGrid
 from planning.geo.frames import camera_axes
 from planning.plan import Camera, Plan, ViewpointArrays
@@ -220,6 +222,15 @@ FADED = 0.16
 FLOWN_FRUSTUM_M = 5.0
 """Length of the pyramid of the camera that flies the plan."""
 
+TEXTURED = (Layer.SURROUNDINGS, Layer.PHOTOS)
+"""Layers with pictures: a processor that draws needs 1.4 to 1.9 times as long for a frame with them."""
+
+SMOOTH_FRAME_S = 1.0 / 30.0
+"""Up to so long a frame turning is smooth: textured layers are then drawn in motion, else while the view rests."""
+
+N_TIMED = 5
+"""Frames of a turn that are measured; the first still compiles."""
+
 ASIDE_DEG, ABOVE_DEG = 28.0, 22.0
 """Standard view: from the right and from above, so that depth can be seen."""
 
@@ -286,7 +297,9 @@ class ScenePicture(QWidget):
         self._panel_values: tuple[ColourScale, Array] | None = None
         self._selection: tuple[Item, ...] = ()
         self._hover: Item | None = None
-        self._hidden: frozenset[Layer] = frozenset({Layer.FRUSTA, Layer.SURROUNDINGS, Layer.PHOTOS})
+        self._hidden: frozenset[Layer] = frozenset({Layer.FRUSTA})
+        self._textured_frame_s: float | None = None
+        self._is_moving, self._is_software = False, False
         self._live_labels: tuple[Label, ...] = ()
         self._surfaces: tuple[Surface, ...] = ()
         self._has_photos = False
@@ -308,7 +321,7 @@ class ScenePicture(QWidget):
         self._navigator.changed.connect(self._follow_orbit)
         self._navigator.moved.connect(self.orbitChanged)
         self._navigator.rested.connect(self._come_to_rest)
-        self._canvas.started.connect(self._show_surroundings)
+        self._canvas.started.connect(self._begin)
         self._dress()
 
     def warm_up(self) -> None:
@@ -337,6 +350,7 @@ class ScenePicture(QWidget):
         """Draw walls and surroundings of the site as its virtual scene has them, while that layer is shown."""
         self._surfaces = tuple(surfaces)
         self._draw_surroundings()
+        self._time_anew()
 
     def offer_photos(self, is_there: bool) -> None:
         """There are photos of the site, or none any more: their layer can be shown, and asks for them."""
@@ -353,15 +367,42 @@ class ScenePicture(QWidget):
                 for surface, drawn in zip(surfaces, surface_drawables(surfaces), strict=True)
             ),
         )
+        self._time_anew()
 
     def _want_photos(self) -> None:
         if self._has_photos and self.is_layer_visible(Layer.PHOTOS):
             self.photosWanted.emit()
 
-    def _show_surroundings(self, is_software: bool) -> None:
-        """Show the surroundings from the beginning where a graphics card draws; a processor needs 1.4 times as long."""
-        if not is_software:
-            self.set_layer_visible(Layer.SURROUNDINGS, True)
+    def _begin(self, is_software: bool) -> None:
+        """A graphics card draws textured layers always; for a processor their frames are measured here."""
+        self._is_software = is_software
+        self._time_anew()
+
+    def _time_anew(self) -> None:
+        self._textured_frame_s, self._canvas.frame_times_s = None, [] if self._is_software else None
+        self._show_textured()
+
+    def textured_frame_s(self) -> float | None:
+        """How long a processor takes for a moving frame with textured layers; None for a graphics card or not known."""
+        return self._textured_frame_s
+
+    def is_painted(self) -> bool:
+        """Whether panels show values or coverage, which photos would hide."""
+        return self._panel_values is not None or self._coverage.is_on
+
+    def _set_moving(self, is_moving: bool) -> None:
+        times_s = self._canvas.frame_times_s
+        if times_s is not None and len(times_s) > N_TIMED:
+            self._textured_frame_s, self._canvas.frame_times_s = float(np.median(times_s[1:])), None
+        self._is_moving = is_moving
+        self._show_textured()
+
+    def _show_textured(self) -> None:
+        """Textured layers that keep the view from turning smoothly are drawn while it rests."""
+        is_slow = self._textured_frame_s is not None and self._textured_frame_s > SMOOTH_FRAME_S
+        for layer in TEXTURED:
+            is_hidden = layer in self._hidden or (layer is Layer.PHOTOS and self.is_painted())
+            self._canvas.set_shown(layer, not is_hidden and not (is_slow and self._is_moving))
 
     def _want_surroundings(self) -> None:
         """Ask for what the site's virtual scene looks like, where it is to be shown and nobody has said yet."""
@@ -439,9 +480,11 @@ class ScenePicture(QWidget):
         return self._sorties.get(number - 1, (True, 1.0))
 
     def set_layer_opacity(self, layer: Layer, opacity: float) -> None:
-        """Draw a layer so strongly, 0 to 1; those of the plan are drawn by sortie."""
+        """Draw a layer so strongly, 0 to 1; routes and viewpoints beside what their sorties say."""
         self._opacities[layer] = opacity
         self._canvas.set_opacity(layer, opacity)
+        if layer in (Layer.ROUTES, Layer.VIEWPOINTS):
+            self._focus()
 
     def layer_opacity(self, layer: Layer) -> float:
         """How strongly a layer is drawn."""
@@ -451,6 +494,7 @@ class ScenePicture(QWidget):
         """Show the aircraft and its camera as they fly a sortie of the plan; None for nowhere."""
         self._stir()
         had, self._flown = self._flown, pose
+        self._set_moving(True)
         self._canvas.draw("flown", self._flown_drawables())
         if (None if had is None else had.sortie) != (None if pose is None else pose.sortie):
             self._focus()
@@ -459,6 +503,7 @@ class ScenePicture(QWidget):
         """Show or hide a layer; what is hidden cannot be picked."""
         self._hidden = self._hidden - {layer} if is_visible else self._hidden | {layer}
         self._canvas.set_shown(layer, is_visible)
+        self._show_textured()
         if layer in (Layer.VIEWPOINTS, Layer.ROUTES):
             self._show_plan_layers()
         elif layer is Layer.FRUSTA:
@@ -696,6 +741,10 @@ class ScenePicture(QWidget):
         points, cells = joined([polyline(piece) for piece in pieces])
         return (Drawable(points, cells, flat(colours().accent, len(cells)), width_px=FOOTPRINT_PX),)
 
+    def _sortie_opacity(self, layer: Layer, number: int) -> float:
+        """How strongly a sortie's share of a layer of the plan is drawn."""
+        return self._sorties.get(number, (True, 1.0))[1] * self.layer_opacity(layer)
+
     def _show_plan_layers(self) -> None:
         """Show and hide sorties as their own state and that of their layers say."""
         for number in range(-1, self._n_sorties):
@@ -717,10 +766,9 @@ class ScenePicture(QWidget):
             return
         sorties, views = self._in_focus(plan)
         for number in range(-1, self._n_sorties):
-            _, opacity = self._sorties.get(number, (True, 1.0))
-            strength = opacity if sorties is None or number in sorties else FADED * opacity
+            strength = 1.0 if sorties is None or number in sorties else FADED
             for layer in (Layer.ROUTES, Layer.VIEWPOINTS):
-                self._canvas.set_opacity((layer, number), strength)
+                self._canvas.set_opacity((layer, number), strength * self._sortie_opacity(layer, number))
         if Layer.FRUSTA not in self._hidden:
             views = np.arange(len(plan.sortie))
         shown = [number for number in range(-1, self._n_sorties) if self._sorties.get(number, (True, 1.0))[0]]
@@ -749,17 +797,19 @@ class ScenePicture(QWidget):
         return None, nothing
 
     def _flown_drawables(self) -> tuple[Drawable, ...]:
-        """The aircraft that flies the plan: a dot, and the pyramid of its camera."""
+        """The aircraft that flies the plan, turned as it flies, and its camera's pyramid in the sortie's colour."""
         plan, pose = self._plan, self._flown
         if plan is None or pose is None:
             return ()
         view = ViewpointArrays(pose.position_enu_m[None], np.array([pose.heading_rad]), np.array([pose.pitch_rad]))
         colour = sortie_colours(np.array([pose.sortie]), colours())
-        points, cells = frusta(view, plan.plan.camera, FLOWN_FRUSTUM_M)
+        span_m = shown_span_m(self.metres_per_px(pose.position_enu_m))
+        points, cells = frusta(view, plan.plan.camera, max(FLOWN_FRUSTUM_M, span_m))
+        # Plans turn aircraft with their cameras.
+        flown, camera = Angles(pose.heading_rad, 0.0, 0.0), Angles(pose.heading_rad, pose.pitch_rad, 0.0)
         return (
-            Drawable(points, cells, flat(colours().text, len(cells)), width_px=3.0, depth_shift=ON_TOP),
-            Drawable(pose.position_enu_m[None], np.array([[0]]), flat(colours().text, 1), 16.0, depth_shift=ON_TOP),
-            Drawable(pose.position_enu_m[None], np.array([[0]]), colour, 10.0, depth_shift=ON_TOP - 1.0),
+            Drawable(points, cells, np.tile(colour, (len(cells), 1)), width_px=3.0, depth_shift=ON_TOP),
+            *aircraft_drawables(pose.position_enu_m, flown, camera, span_m, colours()),
         )
 
     def _draw_marks(self) -> None:
@@ -780,6 +830,7 @@ class ScenePicture(QWidget):
         self._overlay.set_labels([*self._live_labels, *self._texts.labels(self._site, self._plan, self._hidden)])
 
     def _show_legend(self) -> None:
+        self._show_textured()
         painted = (self._panel_values, self._route_values)
         self._overlay.set_scales([values[0] for values in painted if values is not None])
         self._overlay.set_legend(self._texts.coverage_legend() if self._coverage.is_on else ())
@@ -817,11 +868,15 @@ class ScenePicture(QWidget):
 
     def _follow_orbit(self) -> None:
         self._canvas.set_smooth(False)
+        self._set_moving(True)
         view = self._navigator.pinhole()
         self._canvas.look_through(view)
+        if self._flown is not None:
+            self._canvas.draw("flown", self._flown_drawables())
         self._overlay.set_view(view, self._navigator.orbit.distance_m)
 
     def _come_to_rest(self) -> None:
+        self._set_moving(False)
         self._canvas.set_smooth(True)
         self._paint_domes()
         self._make_index()

@@ -15,7 +15,7 @@ from groundstation.gui.view3d.navigator import Drag, Gestures
 from groundstation.gui.view3d.overlay import Tip
 from groundstation.gui.view3d.paint import flat
 from groundstation.gui.view3d.picking import SEE_THROUGH
-from groundstation.gui.view3d.scene_picture import ScenePicture, StandardView
+from groundstation.gui.view3d.scene_picture import SMOOTH_FRAME_S, TEXTURED, ScenePicture, StandardView
 from groundstation.gui.view3d.tools import Hint, Key, Pointer, Preview, Tool, ViewpointTool
 from groundstation.gui.widgets.layer_list import LayerPanel, LayerRow
 from groundstation.gui.widgets.theme import SORTIES, Colours, colours
@@ -224,8 +224,8 @@ def preview_drawables(preview: Preview, look: Colours) -> tuple[Drawable, ...]:
 EDGE_PX, BELOW_PANEL_PX = 8, 60
 """Of the list of layers: from the edges, and above the scale."""
 
-UNFADED = frozenset({Layer.ROUTES, Layer.VIEWPOINTS, Layer.FRUSTA, Layer.LABELS})
-"""Layers without an opacity of their own: those of the plan have it by sortie."""
+UNFADED = frozenset({Layer.LABELS})
+"""Layers without an opacity of their own."""
 
 
 __all__ = ["SceneView", "StandardView"]
@@ -327,9 +327,29 @@ class SceneView(ScenePicture):
             rows.append(LayerRow(f"{number}", self.tr("Sortie {0}").format(number), is_shown, opacity, colour))
         for layer, title in self._layer_titles().items():
             is_shown, can_fade = self.is_layer_visible(layer), layer not in UNFADED
-            rows.append(LayerRow(layer.value, title, is_shown, self.layer_opacity(layer), can_fade=can_fade))
+            note = self._note(layer) if is_shown else ""
+            rows.append(LayerRow(layer.value, title, is_shown, self.layer_opacity(layer), can_fade=can_fade, note=note))
         self._panel.setValue(rows)
         self._place_panel()
+
+    def _note(self, layer: Layer) -> str:
+        """When a textured layer is drawn, and why."""
+        if layer is Layer.PHOTOS and self.is_painted():
+            return self.tr("not drawn: panels show values")
+        frame_s = self.textured_frame_s()
+        if layer not in TEXTURED or frame_s is None:
+            return ""
+        if frame_s > SMOOTH_FRAME_S:
+            text = self.tr("drawn at rest only: a frame takes {0} ms, turning smoothly allows {1} ms")
+        else:
+            text = self.tr("drawn always: a frame takes {0} ms, turning smoothly allows {1} ms")
+        return text.format(round(1e3 * frame_s), round(1e3 * SMOOTH_FRAME_S))
+
+    def _set_moving(self, is_moving: bool) -> None:
+        had_s = self.textured_frame_s()
+        super()._set_moving(is_moving)
+        if self.textured_frame_s() != had_s:
+            self._list_anew()
 
     def _layer_titles(self) -> dict[Layer, str]:
         titles: dict[Layer, str] = {}

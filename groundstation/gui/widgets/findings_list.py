@@ -23,7 +23,7 @@ from PySide6.QtWidgets import QAbstractItemView, QListView, QWidget
 
 from groundstation.gui.application.translate import translated
 from groundstation.gui.widgets.theme import Colours, colours
-from groundstation.services.mission.readiness import SEVERITIES, by_severity, measured_text
+from groundstation.services.mission.readiness import SEVERITIES, by_severity, measured_text, subject_of
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding, Severity
 
@@ -185,7 +185,9 @@ class FindingsList(QListView):
                 self._rows.appendRow(row)
 
     def _text(self, finding: Finding) -> str:
-        title = self.tr("{0} ({1})").format(self.severity_word(finding.severity), finding.code)
+        title, subject = self.severity_word(finding.severity), translated(subject_of(finding.code), self._units)
+        if subject:
+            title = self.tr("{0} ({1})").format(title, subject)
         facts = []
         if finding.value is not None:
             facts.append(self.tr("measured {0}").format(self._measured(finding.value, finding.unit)))

@@ -43,6 +43,8 @@ class LayerRow:
         What is in it, beside the pointer.
     can_fade, can_remove
         Whether it has a slider, and a button that removes it.
+    note
+        What is to be known of how it is drawn, below it; empty for nothing.
     """
 
     key: str
@@ -53,6 +55,7 @@ class LayerRow:
     tip: str = ""
     can_fade: bool = True
     can_remove: bool = False
+    note: str = ""
 
 
 class LayerList(QWidget):
@@ -127,8 +130,14 @@ class LayerList(QWidget):
             box.toggled.connect(lambda checked, key=row.key: self._edited(key, is_visible=checked))
             slider.valueChanged.connect(lambda value, key=row.key: self._edited(key, opacity=value / 100.0))
             self._boxes[row.key] = box, slider
-            self._grid.addWidget(box, number, 0)
-            self._grid.addWidget(slider, number, 1)
+            self._grid.addWidget(box, 2 * number, 0)
+            self._grid.addWidget(slider, 2 * number, 1)
+            if row.note:
+                note = QLabel(row.note)
+                note.setWordWrap(True)
+                note.setProperty("role", "muted")
+                self._grid.addWidget(note, 2 * number + 1, 0, 1, 2)
+                note.show()
             # Qt shows them by itself only later, and until then the list has no size.
             box.show()
             slider.setVisible(row.can_fade)
@@ -137,7 +146,7 @@ class LayerList(QWidget):
                 remove.setText("×")
                 remove.setToolTip(self.tr("Remove {0} from the map; the file stays").format(row.title))
                 remove.clicked.connect(lambda _checked=False, key=row.key: self.removed.emit(key))
-                self._grid.addWidget(remove, number, 2)
+                self._grid.addWidget(remove, 2 * number, 2)
                 remove.show()
 
     def _edited(self, key: str, *, is_visible: bool | None = None, opacity: float | None = None) -> None:

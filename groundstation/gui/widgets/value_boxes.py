@@ -143,7 +143,7 @@ class FileBox(QWidget):
 
 
 class PointBox(QWidget):
-    """Edits a point: metres east, north and up of the site's zero."""
+    """Edits a point: metres east, north and up of the site origin."""
 
     valueChanged = Signal(object)  # noqa: N815
 
@@ -269,7 +269,7 @@ LEAST_CORNERS = 3
 
 
 class PolygonBox(QWidget):
-    """Edits a polygon on the ground: corners, metres east and north of the site's zero."""
+    """Edits a polygon on the ground: corners, metres east and north of the site origin."""
 
     valueChanged = Signal(object)  # noqa: N815  (Qt's own way of naming)
 

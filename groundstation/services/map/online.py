@@ -39,6 +39,11 @@ from planning.base.messages import say
 
 EXAMPLE_URL = "https://tile.example.org/{z}/{x}/{y}.png"
 
+OSM_URL = "https://tile.openstreetmap.org/{z}/{x}/{y}.png"
+OSM_ATTRIBUTION = "© OpenStreetMap contributors, ODbL"
+OSM_POLICY = "https://operations.osmfoundation.org/policies/tiles/"
+"""The usual choice: standard tiles of OpenStreetMap, levels 0 to 19; this module keeps to their policy."""
+
 USER_AGENT = f"Reflight/{__version__} (ground station; map view)"
 
 MIN_STEP_S = 0.1

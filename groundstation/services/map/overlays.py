@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -87,6 +87,8 @@ class Overlay:
         Shape (n, 2).
     labels
         Names and where they stand.
+    is_swapped
+        Latitudes were read as longitudes and the other way round, for only so they are places.
     """
 
     path: Path
@@ -95,6 +97,7 @@ class Overlay:
     points: Floats = field(default_factory=lambda: np.zeros((0, 2)))
     labels: tuple[tuple[str, tuple[float, float]], ...] = ()
     picture: OverlayPicture | None = None
+    is_swapped: bool = False
 
     @property
     def name(self) -> str:
@@ -106,6 +109,38 @@ class Overlay:
         corners = [] if self.picture is None else [np.array([self.picture.low, self.picture.high])]
         rings = [ring for area in self.areas for ring in area]
         return np.concatenate([self.points, *self.lines, *rings, *corners])
+
+    def swapped(self) -> Overlay:
+        """The same with latitudes and longitudes exchanged; a picture stays."""
+        places = _swapped(np.array([place for _, place in self.labels]).reshape(-1, 2)).tolist()
+        labels = tuple((text, (x, y)) for (text, _), (x, y) in zip(self.labels, places, strict=True))
+        return replace(
+            self,
+            lines=tuple(map(_swapped, self.lines)),
+            areas=tuple(tuple(map(_swapped, area)) for area in self.areas),
+            points=_swapped(self.points),
+            labels=labels,
+            is_swapped=not self.is_swapped,
+        )
+
+
+FAR_M = 50_000.0
+"""An overlay that lies further from the site shows nothing of it: no flight is planned so far away."""
+
+
+def distance_m(extent: Floats, lat_deg: float, lon_deg: float) -> float:
+    """How far a place is from the rectangle around points, shape (n, 2), world coordinates; 0 inside."""
+    near = extent - world_from_geodetic(lat_deg, lon_deg)
+    near[:, 0] -= np.round(near[:, 0])
+    gap = np.maximum(0.0, np.maximum(near.min(axis=0), -near.max(axis=0)))
+    return float(np.hypot(*gap)) * WORLD_M * math.cos(math.radians(lat_deg))
+
+
+def _swapped(world: Floats) -> Floats:
+    lat_deg = np.degrees(np.arctan(np.sinh(math.pi * (1.0 - 2.0 * world[:, 1]))))
+    found = world_from_geodetic((world[:, 0] % 1.0) * 360.0 - 180.0, lat_deg)
+    found[:, 0] = np.unwrap(found[:, 0], period=1.0)
+    return found
 
 
 def read_overlay(path: Path) -> Overlay:
@@ -119,7 +154,14 @@ def read_overlay(path: Path) -> Overlay:
     suffix = path.suffix.lower()
     if suffix in (".tif", ".tiff"):
         return Overlay(path, picture=_geotiff(path))
-    shapes = _Shapes(path)
+    try:
+        return _shapes(path, suffix, is_swapped=False)
+    except _Swapped:
+        return _shapes(path, suffix, is_swapped=True)
+
+
+def _shapes(path: Path, suffix: str, *, is_swapped: bool) -> Overlay:
+    shapes = _Shapes(path, is_swapped)
     if suffix in (".geojson", ".json"):
         _read_geojson(shapes)
     elif suffix == ".kml":
@@ -134,8 +176,8 @@ def read_overlay(path: Path) -> Overlay:
 class _Shapes:
     """Shapes of a file as they are found, in degrees."""
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
+    def __init__(self, path: Path, is_swapped: bool = False) -> None:
+        self.path, self.is_swapped = path, is_swapped
         self.to_wgs84: Callable[[Floats], Floats] = lambda points: points
         self._lines: list[Floats] = []
         self._areas: list[tuple[Floats, ...]] = []
@@ -172,7 +214,14 @@ class _Shapes:
                 "there is nothing in it that has a place: no points, lines or areas; choose another file",
                 place=self.path,
             )
-        return Overlay(self.path, tuple(self._lines), tuple(self._areas), points, tuple(self._labels))
+        return Overlay(
+            self.path,
+            tuple(self._lines),
+            tuple(self._areas),
+            points,
+            tuple(self._labels),
+            is_swapped=self.is_swapped,
+        )
 
     def _name(self, name: str, place: Floats) -> None:
         text = plain_text(name)[:60]
@@ -188,8 +237,12 @@ class _Shapes:
         if not len(points):
             return np.zeros((0, 2))
         degrees = self.to_wgs84(points)
-        is_place = np.isfinite(degrees).all(axis=1) & (np.abs(degrees) <= (360.0, 90.0)).all(axis=1)
+        if self.is_swapped:
+            degrees = degrees[:, ::-1]
+        is_place = _are_places(degrees)
         if not is_place.all():
+            if not self.is_swapped and _are_places(degrees[:, ::-1]).all():
+                raise _Swapped
             wrong = points[int(np.argmin(is_place))]
             raise InputError.say(
                 "expected longitudes and latitudes in degrees, found {:g}, {:g}; export it in WGS 84 (EPSG:4326)",
@@ -201,6 +254,15 @@ class _Shapes:
         # A line that goes over 180 E goes on there, and not around the world.
         world[:, 0] = np.unwrap(world[:, 0], period=1.0)
         return world
+
+
+def _are_places(degrees: Floats) -> NDArray[np.bool_]:
+    """Which rows, shape (n, 2), are a longitude and a latitude."""
+    return np.asarray(np.isfinite(degrees).all(axis=1) & (np.abs(degrees) <= (360.0, 90.0)).all(axis=1))
+
+
+class _Swapped(Exception):  # noqa: N818  (the name says what happened)
+    """Latitudes stand where longitudes have to."""
 
 
 # GeoJSON

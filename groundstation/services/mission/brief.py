@@ -146,9 +146,16 @@ class FlightBrief:
     proof: str = ""
 
     def in_words(self, localize: Callable[[str], str]) -> FlightBrief:
-        """The brief with its lines in the pilot's language; findings stay as they are."""
+        """The brief with its lines and findings in the pilot's language."""
+
+        def worded(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
+            return tuple(replace(each, message=localize(each.message), place=localize(each.place)) for each in findings)
+
         return replace(
             self,
+            findings=worded(self.findings),
+            zones=worded(self.zones),
+            proof=localize(self.proof),
             sun=tuple(map(localize, self.sun)),
             camera_by_hand=tuple(map(localize, self.camera_by_hand)),
             camera_by_mission=tuple(map(localize, self.camera_by_mission)),

@@ -89,6 +89,78 @@ LONG_S = 120.0
 """Durations from here on are read as minutes and seconds."""
 
 
+SUBJECTS = {
+    code: subject
+    for subject, codes in (
+        (say("Airspace"), "airspace altitude low-flight no-fly home-near-no-fly"),
+        (say("Geo-zones"), "zone zones"),
+        (say("Ground risk"), "sora ground-risk"),
+        (say("Safety distance"), "distance distance-unknown leg-distance glass-sensing"),
+        (
+            say("Coverage"),
+            "coverage coverage-far less-coverage open left-open negligible-rest not-good-enough sections "
+            "panel panels-lost views views-taken fewer-views few-compared too-many-views",
+        ),
+        (say("Planning"), "compiled time-budget request-left-out"),
+        (say("Sharpness"), "gsd sharpness motion-blur rolling-shutter depth-of-field blur"),
+        (say("Exposure"), "exposure"),
+        (say("Sun"), "sun"),
+        (say("Wind"), "wind"),
+        (say("Battery"), "battery cold duration endurance"),
+        (say("Sorties"), "sorties fewer-sorties sortie at-once waypoints duplicates length"),
+        (
+            say("Route"),
+            "path no-path spacing leg-spacing order in-passing views-walled-in vertical-leg turn hold "
+            "settle hover speed",
+        ),
+        (say("Return height"), "return-height security-height"),
+        (say("Home"), "home takeoff no-takeoff"),
+        (say("Rally points"), "rally"),
+        (say("Signal lost"), "link-loss"),
+        (say("Geofence"), "no-fence"),
+        (
+            say("Camera"),
+            "camera cameras-scaled lens zoom payload no-trigger trigger triggers-only photo-interval "
+            "panorama time-lapse fisheye-cut-off",
+        ),
+        (
+            say("Camera direction"),
+            "gimbal angle no-gimbal-pitch mount-after-yaw heading no-heading yaw-ignored photo-direction "
+            "photo-while-turning",
+        ),
+        (say("Heights"), "height heights mixed-heights terrain"),
+        (say("Photos"), "photo photos reports-lost images-missing masks-missing dropped-photo not-ready"),
+        (say("Positions"), "position positions coordinates rtk-not-fixed"),
+        (
+            say("Poses"),
+            "pose poses-refined refined-pose refinement-refused angles-off-in-common accuracy-estimated "
+            "unposed photos-turned photos-not-refined",
+        ),
+        (say("Panels"), "no-panels panels-with-more-corners panel-faces-inwards facade facades-left-out"),
+        (say("Site"), "site bare-site place ground walls looks-down no-points"),
+        (say("Coarse model"), "model control north-unknown scale frame-of-model"),
+        (
+            say("Mission file"),
+            "action autopilot-items item waypoint fly-to-wayline fly-waypoints file-name finish garbled "
+            "nan stale-distance no-mission no-template option-left-out other-app parts-disagree route "
+            "simplified stated-time dropped-do after-the-end unknown-command unsupported version aircraft",
+        ),
+        (say("Project"), "loose-files old-format plan-changed plan-left-out read-only site-changed"),
+        (say("Flight record"), "ends-in-air motors-off no-flight time-went-back log raw"),
+        (say("Proof"), "proof"),
+    )
+    for code in codes.split()
+}
+"""What findings are about, as a pilot calls it, by their code or how it begins; files and scripts have the codes."""
+
+
+def subject_of(code: str) -> Message:
+    """What a finding is about, in a word that a pilot knows; empty for an unknown code, as of a plug-in."""
+    words = code.split("-")
+    beginnings = ("-".join(words[:n]) for n in range(len(words), 0, -1))
+    return next((SUBJECTS[each] for each in beginnings if each in SUBJECTS), glue())
+
+
 def by_severity(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     """Findings, the gravest first, else in the order in which they came."""
     return tuple(sorted(findings, key=lambda finding: SEVERITIES.index(finding.severity)))
@@ -227,13 +299,14 @@ def _place(case: Case) -> Iterator[Finding]:
     if case.site_model.site.place_from == "ifc-site":
         text = say(
             "the site lies where its BIM file says, which is often just the city: compare it with a map, and "
-            "give its --origin"
+            "set the site origin (--origin)"
         )
         yield Finding(Severity.WARNING, "place", text)
     if case.site_model.site.place_from == "unknown":
         text = say(
-            "nobody has said where the site is, or how large: make its coarse model again with --origin, and with "
-            "a distance or control points, or set its origin on the Site tab once its size is known"
+            "nobody has said where the site is, or how large: make its coarse model again with its origin "
+            "(--origin) and with a distance or control points, or set the site origin on the Site tab once its "
+            "size is known"
         )
         yield Finding(Severity.ERROR, "place", text)
 
@@ -412,7 +485,7 @@ def _cold(case: Case, temperature_c: float | None) -> Iterator[Finding]:
         text = say(
             "at {:g} degrees a battery gives some {:.0%} of its charge, {:.0f} s above the reserve, and the "
             "longest sortie takes {:.0f} s: warm the batteries to 20 degrees, or plan shorter sorties with a "
-            "larger --reserve",
+            "larger battery reserve (--reserve)",
             temperature_c,
             share,
             usable_s,

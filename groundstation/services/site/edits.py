@@ -38,7 +38,7 @@ HEIGHT_DECIMALS = 4
 
 
 FARTHEST_PICK_M = 20_000.0
-"""From the site's zero to a place that is picked on the map: sites have no coordinates beyond."""
+"""From the site origin to a place that is picked on the map: sites have no coordinates beyond."""
 
 
 class HeightReference(StrEnum):
@@ -219,7 +219,7 @@ def ground_at(model: SiteModel, lat_deg: float, lon_deg: float) -> Vec3:
     Raises
     ------
     InputError
-        The place is further from the site's zero than anything on a site.
+        The place is further from the site origin than anything on a site.
     """
     origin, ground_z_m = model.site.origin, model.site.airspace.ground_z_m
     with input_checked():
@@ -227,7 +227,7 @@ def ground_at(model: SiteModel, lat_deg: float, lon_deg: float) -> Vec3:
         east_m, north_m, _ = enu_from_geodetic(origin, lat_deg, lon_deg, height_m)[0]
     if math.hypot(east_m, north_m) > FARTHEST_PICK_M:
         raise InputError.say(
-            "this place is {:.0f} km from the site; move the site's zero there first",
+            "this place is {:.0f} km from the site; move the site origin there first",
             math.hypot(east_m, north_m) / 1000.0,
         )
     return float(east_m), float(north_m), ground_z_m

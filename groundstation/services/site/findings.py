@@ -75,7 +75,7 @@ def _zones(model: SiteModel) -> Iterator[Finding]:
 
 def _no_panels(model: SiteModel) -> Iterator[Finding]:
     if model.site.n_panels == 0:
-        text = say("there are no panels yet: find them in photos (Photos tab), or draw a panel grid on the building")
+        text = say("there are no panels yet: find them in photos (Photos tab), or lay a facade grid on the building")
         yield Finding(Severity.WARNING, "no-panels", text, "building")
 
 

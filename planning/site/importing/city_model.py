@@ -271,7 +271,7 @@ def _choose(
         return buildings, ()
     if options.panel_grids:
         nearest = _nearest(buildings, np.array(options.panel_grids[0].corners), crs, options)
-        return [nearest], (say("the panel grid is on building '{}'", nearest.id),)
+        return [nearest], (say("the facade grid is on building '{}'", nearest.id),)
     with_windows = sorted((b for b in buildings if b.windows), key=lambda b: -len(b.windows))
     if not with_windows:
         largest = max(buildings, key=lambda building: len(building.faces))

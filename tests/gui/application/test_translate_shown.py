@@ -62,7 +62,7 @@ def test_pre_flight_findings_are_german_and_still_lead_to_their_place(german):
     shown.placePicked.connect(picked.append)
     shown.set_findings([TOO_CLOSE])
     assert shown.texts() == (
-        "Fehler (leg-distance)\n"
+        "Fehler (Mindestabstand)\n"
         "kleinster Abstand entlang des Flugwegs: 3.048 m, mindestens 10 m; die Route neu planen\n"
         "gemessen 3.0 m · Grenze 10.0 m · bei Einsatz 2, Strecke 3",
     )

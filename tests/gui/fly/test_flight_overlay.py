@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QColor, QFontMetricsF, QImage, QPainter
 
-from groundstation.gui.fly.aircraft_shape import aircraft_drawables, body_axes, paint_aircraft
 from groundstation.gui.fly.flight_overlay import WarningBanner
 from groundstation.gui.fly.readouts_view import LETTERS, TAPE_DEG, AttitudeView, FlightFigures, tape_font, tape_marks
+from groundstation.gui.view3d.aircraft_shape import aircraft_drawables, body_axes, paint_aircraft
 from groundstation.gui.widgets.theme import LIGHT
 from groundstation.services.fly.announce import aged_warnings, ordered_warnings
 from groundstation.services.fly.events import LinkState, LiveView, Readouts, ViewState

@@ -6,6 +6,8 @@ from functools import partial
 import pytest
 from PySide6.QtCore import QPoint
 
+from groundstation.gui.fly.flight_settings_page import SettingsPage
+from groundstation.gui.widgets.terms import TermLabel
 from groundstation.services.fly.options import USUAL_ADDRESS, ConnectionChoice, FlightSettings, LinkKind
 from groundstation.services.jobs.runner import JobRunner
 from groundstation.services.project.document import Document
@@ -226,3 +228,10 @@ def _is_seen(widget, area):
     """Whether a widget lies in the height that an area shows; the window makes room for its width."""
     top = widget.mapTo(area.viewport(), QPoint(0, 0)).y()
     return widget.isVisible() and top >= 0 and top + widget.height() <= area.viewport().height()
+
+
+def test_terms_of_the_settings_of_a_flight_say_what_they_mean(application):
+    page = SettingsPage()
+    signs = {label.text() for label in page.findChildren(TermLabel)}
+    assert {"Operator number", "Serial number", "RTK corrections"} <= signs
+    page.close()

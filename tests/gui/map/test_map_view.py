@@ -14,13 +14,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from PySide6.QtWidgets import QMessageBox
 
-from groundstation.services.map.online import OnlineMap
+from groundstation.services.map.online import OSM_ATTRIBUTION, OSM_URL, OnlineMap
 from groundstation.services.map.web_mercator import Tile, world_from_enu, world_from_geodetic
 from groundstation.services.project.document import Document, Item, ItemKind, PlanEntry
 from groundstation.services.units import UnitSystem
 from planning.geo.frames import Origin
-from tests.gui.driving import click_on, clicked, turn_until, type_into, words_of
+from tests.gui.driving import click_on, clicked, press, turn_until, type_into, words_of
 from tests.missions.plans import example_plan
 from tests.planning.plan_cases import kiosk
 from tests.services.map_files import (
@@ -490,15 +491,59 @@ def test_overlays_lie_on_the_map_and_can_be_faint_hidden_and_removed(view, settl
 def test_an_overlay_elsewhere_is_brought_into_view_and_a_bad_one_is_told(view, settle, tmp_path):
     view.set_document(document())
     settle()
-    view.add_overlay(write_overlay(tmp_path / "far.geojson", east=0.5))
+    view.add_overlay(write_overlay(tmp_path / "far.geojson", east=0.3))
     settle()
-    middle = view.viewport().screen(world_from_geodetic(HERE[0], HERE[1] + 0.5))[0]
+    middle = view.viewport().screen(world_from_geodetic(HERE[0], HERE[1] + 0.3))[0]
     assert middle == pytest.approx([350, 250], abs=2.0)
     bad = tmp_path / "bad.kml"
     bad.write_text("nonsense")
     view.add_overlay(bad)
     settle()
     assert "not KML" in view.note()
+
+
+def rows(view):
+    return view.layer_panel().list.value()
+
+
+def write_line(path, places):
+    path.write_text(json.dumps({"type": "LineString", "coordinates": places}))
+    return path
+
+
+def test_an_overlay_far_from_the_site_is_told_and_moves_nothing(view, settle, tmp_path):
+    view.set_document(document())
+    settle()
+    before = view.viewport()
+    view.add_overlay(write_overlay(tmp_path / "far.geojson", east=5.0))
+    settle()
+    assert view.viewport() == before
+    assert "far.geojson lies" in view.note()
+    assert "the map stays where it is" in view.note()
+
+
+@pytest.mark.parametrize("place", [HERE, (48.15, 11.5)], ids=["no place as it is", "a place elsewhere as it is"])
+def test_an_overlay_with_swapped_axes_is_shown_at_the_site_once_the_user_agrees(view, settle, tmp_path, place):
+    lat, lon = place
+    here = document()
+    origin = replace(here.site.site.origin, lat_deg=lat, lon_deg=lon)
+    view.set_document(document(replace(here.site, site=replace(here.site.site, origin=origin))))
+    settle()
+    before = view.viewport()
+    path = write_line(tmp_path / "swapped.geojson", [[lat - 4e-4, lon], [lat + 4e-4, lon]])
+    with clicked(press(QMessageBox.StandardButton.Yes)):
+        view.add_overlay(path)
+        settle()
+    assert view.viewport() == before
+    (row,) = [row for row in rows(view) if row.can_remove]
+    found = view.layers.overlay(row.key).extent()
+    np.testing.assert_allclose(found.mean(axis=0), world_from_geodetic(lat, lon)[0], atol=1e-7)
+    view.layers.remove(row.key)
+    with clicked(press(QMessageBox.StandardButton.Cancel)):
+        view.add_overlay(path)
+        settle()
+    assert view.viewport() == before
+    assert "km from the site" in view.note() or not [row for row in rows(view) if row.can_remove]
 
 
 def test_an_overlay_over_the_date_line_is_drawn_from_both_sides(application, view, settle, tmp_path):
@@ -643,6 +688,9 @@ def test_an_online_map_is_asked_only_after_consent_and_shows_its_licence(view, s
     view.onlineChanged.connect(heard.append)
 
     def fill(dialog):
+        assert dialog.value() == OnlineMap(OSM_URL, OSM_ATTRIBUTION), "proposed, and off"
+        dialog.server.setCurrentIndex(1)
+        assert (dialog.url.text(), dialog.attribution.text()) == ("", "")
         ok = dialog.findChild(QDialogButtonBox).button(QDialogButtonBox.StandardButton.Ok)
         type_into(dialog.url, server.url + "/{z}/{x}/{y}.png")
         dialog.is_on.click()

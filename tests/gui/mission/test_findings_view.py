@@ -76,9 +76,9 @@ def test_old_findings_are_no_verdict_even_after_units_change(view):
 def test_rows_say_severity_rule_value_limit_and_place_gravest_first(view):
     view.set_findings(FINDINGS)
     first, second = view.list_view().texts()
-    assert first.startswith("Error (leg-distance)\nsmallest distance")
+    assert first.startswith("Error (Safety distance)\nsmallest distance")
     assert first.endswith("measured 9.0 m · limit 10.0 m · at sortie 2, leg 5")
-    assert second.startswith("Warning (settle)")
+    assert second.startswith("Warning (Route)")
     view.set_units(UnitSystem.IMPERIAL)
     assert "measured 29.5 ft · limit 32.8 ft" in view.list_view().texts()[0]
 

@@ -110,7 +110,7 @@ def test_mesh_becomes_a_site_field_by_field(opened, tower_mm):
 
     hands = opened(tower_mm)
     dialog, form, grid = hands.dialog, hands.dialog.form, hands.dialog.grid
-    assert "give “Zero point on earth”" in dialog.error()
+    assert "give “Site origin”" in dialog.error()
     lat, lon, _, sea = form.origin_box().boxes()
     lat.setValue(47.3769)
     lon.setValue(8.5417)

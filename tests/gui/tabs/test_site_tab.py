@@ -340,7 +340,7 @@ def test_panel_grid_is_picked_checked_shown_and_added(opened):
     hands.idle()
     assert [(f.id, len(f.panels)) for f in hands.site.facades] == [("A", 280), ("B", 48)]
     assert hands.context.selection == Item(ItemKind.FACADE, "B")
-    assert hands.context.session.undo_label == "Add panel grid B"
+    assert hands.context.session.undo_label == "Add facade grid B"
     assert detail.properties.isVisible()
 
 

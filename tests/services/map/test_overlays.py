@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from groundstation.services.map import overlays as module
-from groundstation.services.map.overlays import read_overlay
+from groundstation.services.map.overlays import distance_m, read_overlay
 from groundstation.services.map.web_mercator import geodetic_from_world, world_from_geodetic
 from planning.base.errors import InputError
 
@@ -259,3 +259,27 @@ def test_geotiff_that_cannot_be_shown_is_refused(tmp_path, monkeypatch):
     assert "beyond the end of web maps" in refused(polar)
     monkeypatch.setattr(module, "MAX_BLOCK_BYTES", 100)
     assert "tiled GeoTIFF" in refused(whole)
+
+
+def test_swapped_axes_are_found_out_where_they_are_no_places_and_are_undone_where_they_are(tmp_path):
+    wrong = [[lat, lon] for lon, lat in SQUARE]
+    path = write(tmp_path / "a.geojson", {"type": "LineString", "coordinates": wrong})
+    found = read_overlay(path)
+    assert found.is_swapped, "114 degrees is no latitude"
+    right = read_overlay(write(tmp_path / "b.geojson", {"type": "LineString", "coordinates": SQUARE}))
+    assert not right.is_swapped
+    np.testing.assert_allclose(found.extent(), right.extent())
+    low = read_overlay(
+        write(tmp_path / "c.geojson", {"type": "LineString", "coordinates": [[48.1, 11.5], [48.2, 11.5]]})
+    )
+    assert not low.is_swapped
+    assert distance_m(low.extent(), 48.15, 11.5) > 1e6
+    assert distance_m(low.swapped().extent(), 48.15, 11.5) == 0.0
+    np.testing.assert_allclose(low.swapped().swapped().extent(), low.extent(), atol=1e-12)
+
+
+def test_the_distance_of_an_overlay_counts_from_its_rectangle_and_over_the_date_line(tmp_path):
+    line = {"type": "LineString", "coordinates": [[179.9, 0.0], [179.95, 0.0]]}
+    found = read_overlay(write(tmp_path / "d.geojson", line))
+    assert distance_m(found.extent(), 0.0, -179.95) == pytest.approx(0.1 * 111_319.5, rel=1e-3)
+    assert distance_m(found.extent(), 0.0, 179.92) == 0.0

@@ -1,12 +1,22 @@
 """Findings in order and in the user's units."""
 
+import re
+from pathlib import Path
+
 import pytest
 
-from groundstation.services.mission.readiness import by_severity, counts_by_severity, duration_text, measured_text
+from groundstation.services.mission.readiness import (
+    by_severity,
+    counts_by_severity,
+    duration_text,
+    measured_text,
+    subject_of,
+)
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding, Severity
 
 METRIC, IMPERIAL = UnitSystem.METRIC, UnitSystem.IMPERIAL
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.mark.parametrize(
@@ -42,3 +52,16 @@ def test_the_gravest_comes_first_and_the_rest_keeps_its_order():
 )
 def test_durations_of_an_hour_are_not_called_minutes(duration_s, text):
     assert duration_text(duration_s) == text
+
+
+def test_every_finding_is_about_something_that_has_a_word():
+    codes = set()
+    for house in ("planning", "missions", "reconstruction", "groundstation"):
+        for path in (ROOT / house).rglob("*.py"):
+            text = path.read_text("utf-8")
+            codes |= set(re.findall(r'\bFinding\(\s*[\w.]+,\s*"([a-z-]+)"', text))
+            codes |= set(re.findall(r'\bjudge\(\s*[^,]+,\s*"([a-z-]+)"', text)) if house == "planning" else set()
+    assert len(codes) > 150
+    assert sorted(code for code in codes if not subject_of(code)) == []
+    assert str(subject_of("coverage-far")) == "Coverage"
+    assert subject_of("word-of-a-plug-in") == ""

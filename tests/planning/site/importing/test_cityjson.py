@@ -273,7 +273,7 @@ def test_real_blocks_take_a_panel_grid_on_a_wall_in_their_own_coordinates(
     model = site.model
     assert model.site.n_panels == 15
     if name != "delft_1b":
-        assert any(f"the panel grid is on building '{building}'" in note for note in site.notes)
+        assert any(f"the facade grid is on building '{building}'" in note for note in site.notes)
     system = crs or json.loads(path.read_text())["metadata"]["referenceSystem"]
     low_left = enu_from_geodetic(model.site.origin, *crs_conversion(system, wall).geodetic(wall))[0]
     first = panel_corners(model.site)[0, 0]

@@ -31,6 +31,15 @@ NOSE = 0.86
 CAMERA_LENGTH = 0.55
 
 
+LEAST_SPAN_M, SPAN_PX = 1.0, 46.0
+"""Span of the aircraft as it is drawn: larger than it is, so that it is found in a view of the whole site."""
+
+
+def shown_span_m(metres_per_px: float) -> float:
+    """The span to draw an aircraft with where a pixel is so large."""
+    return max(LEAST_SPAN_M, SPAN_PX * metres_per_px)
+
+
 def _box(low: tuple[float, float, float], high: tuple[float, float, float]) -> Array:
     """The six faces of a box, shape (6, 4, 3), counter-clockwise from outside."""
     x, y, z = (np.array([a, b]) for a, b in zip(low, high, strict=True))
