@@ -2060,16 +2060,16 @@ Um trotzdem zu fliegen, {1} eintippen:</translation>
         <translation>Wird geprüft ...</translation>
     </message>
     <message>
-        <source>Check the panel grid</source>
-        <translation>Scheibenraster prüfen</translation>
+        <source>Check the facade grid</source>
+        <translation>Fassadenraster prüfen</translation>
+    </message>
+    <message>
+        <source>Add facade grid {0}</source>
+        <translation>Fassadenraster {0} hinzufügen</translation>
     </message>
     <message>
         <source>The panels lie on the building and look outwards.</source>
         <translation>Die Scheiben liegen am Gebäude und zeigen nach außen.</translation>
-    </message>
-    <message>
-        <source>Add panel grid {0}</source>
-        <translation>Scheibenraster {0} hinzufügen</translation>
     </message>
 </context>
 <context>
@@ -2350,8 +2350,8 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Die Scheiben liegen am Gebäude und zeigen nach außen.</translation>
     </message>
     <message>
-        <source>Check the panel grid</source>
-        <translation>Scheibenraster prüfen</translation>
+        <source>Check the facade grid</source>
+        <translation>Fassadenraster prüfen</translation>
     </message>
 </context>
 <context>
@@ -2367,10 +2367,6 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>As usual for the format</source>
         <translation>Wie im Format üblich</translation>
-    </message>
-    <message>
-        <source>Zero point on earth</source>
-        <translation>Nullpunkt auf der Erde</translation>
     </message>
     <message>
         <source>Coordinate system</source>
@@ -2411,6 +2407,10 @@ Scheiben: {2}, je {3} × {4}</translation>
     <message>
         <source>Building</source>
         <translation>Gebäude</translation>
+    </message>
+    <message>
+        <source>Site origin</source>
+        <translation>Nullpunkt</translation>
     </message>
     <message>
         <source>Facade grid</source>
@@ -2496,8 +2496,8 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Nullpunkt bei {0:.6f}°, {1:.6f}°, {2} über Ellipsoid, {3} über Meer (EGM96)</translation>
     </message>
     <message>
-        <source>No panels yet: find them in photos after the import, or pick a panel grid here.</source>
-        <translation>Noch keine Scheiben: nach dem Import in Fotos suchen oder hier ein Scheibenraster wählen.</translation>
+        <source>No panels yet: find them in photos after the import, or pick a facade grid here.</source>
+        <translation>Noch keine Scheiben: nach dem Import in Fotos suchen oder hier ein Fassadenraster wählen.</translation>
     </message>
     <message>
         <source>{0} smaller ones</source>
@@ -3178,6 +3178,18 @@ Scheiben: {2}, je {3} × {4}</translation>
         <translation>Auflagen ({0})</translation>
     </message>
     <message>
+        <source>In {0} latitudes stand where longitudes have to: as it is, it has no place on earth. Show it with both swapped?</source>
+        <translation>In {0} stehen Breiten, wo Längen stehen müssen: So hat es keinen Ort auf der Erde. Mit vertauschten Werten zeigen?</translation>
+    </message>
+    <message>
+        <source>Swapped coordinates?</source>
+        <translation>Koordinaten vertauscht?</translation>
+    </message>
+    <message>
+        <source>{0} lies {1} km from the site. With latitude and longitude swapped it lies at the site. Swap them on the map? The file stays as it is.</source>
+        <translation>{0} liegt {1} km vom Standort entfernt. Mit vertauschter Breite und Länge liegt es am Standort. Auf der Karte vertauschen? Die Datei bleibt, wie sie ist.</translation>
+    </message>
+    <message>
         <source>{0}: not kept out of</source>
         <translation>{0}: wird nicht gemieden</translation>
     </message>
@@ -3830,6 +3842,14 @@ Größe: {1}; Dreiecke: {2}</translation>
         <translation>Onlinekarte</translation>
     </message>
     <message>
+        <source>OpenStreetMap, standard tiles</source>
+        <translation>OpenStreetMap, Standardkacheln</translation>
+    </message>
+    <message>
+        <source>Another server</source>
+        <translation>Anderer Server</translation>
+    </message>
+    <message>
         <source>© who owns the data, and its licence</source>
         <translation>© wem die Daten gehören, und die Lizenz</translation>
     </message>
@@ -3840,6 +3860,14 @@ Größe: {1}; Dreiecke: {2}</translation>
     <message>
         <source>Reflight asks this server for the tiles that the map shows, and for nothing else. The server learns which area you look at. Use a server whose terms allow this, and enter the words that it asks for: they stand on the map. Tiles are kept on this computer, for a week where the server does not say otherwise, and are shown without network.</source>
         <translation>Reflight fragt diesen Server nach den Kacheln, die die Karte zeigt, und nach nichts anderem. Der Server erfährt, welches Gebiet Sie ansehen. Nehmen Sie einen Server, dessen Bedingungen das erlauben, und geben Sie die Worte ein, die er verlangt: Sie stehen auf der Karte. Kacheln bleiben auf diesem Rechner, eine Woche lang, wenn der Server nichts anderes sagt, und sind ohne Netz zu sehen.</translation>
+    </message>
+    <message>
+        <source>OpenStreetMap gives its tiles away, with no promise, on &lt;a href=&apos;{0}&apos;&gt;conditions&lt;/a&gt; that Reflight keeps: a name in each request, tiles kept for a week, only what is looked at, its licence on the map. Do not load areas in advance.</source>
+        <translation>OpenStreetMap gibt seine Kacheln kostenlos und ohne Zusage her, unter &lt;a href=&apos;{0}&apos;&gt;Bedingungen&lt;/a&gt;, die Reflight einhält: ein Name in jeder Anfrage, Kacheln eine Woche aufgehoben, nur was betrachtet wird, die Lizenz auf der Karte. Laden Sie keine Gebiete auf Vorrat.</translation>
+    </message>
+    <message>
+        <source>Server</source>
+        <translation>Server</translation>
     </message>
     <message>
         <source>Address of a tile</source>
@@ -5565,10 +5593,6 @@ Blickrichtung: {3}</translation>
         <translation>Erwartetes PSNR [dB]</translation>
     </message>
     <message>
-        <source>What this plan is worth is not known, or it was changed since; plan it again.</source>
-        <translation>Was dieser Plan wert ist, ist nicht bekannt, oder er wurde seitdem geändert; neu planen.</translation>
-    </message>
-    <message>
         <source>Sun</source>
         <translation>Sonne</translation>
     </message>
@@ -5675,6 +5699,14 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Unseen views of its model: {0}</source>
         <translation>Neue Ansichten seines Modells: {0}</translation>
+    </message>
+    <message>
+        <source>What this plan is worth is not known.</source>
+        <translation>Was dieser Plan wert ist, ist nicht bekannt.</translation>
+    </message>
+    <message>
+        <source>Estimate the model&apos;s quality</source>
+        <translation>Qualität des Modells schätzen</translation>
     </message>
     <message>
         <source>this plan, battery by battery</source>
@@ -6514,8 +6546,8 @@ Damit weiterarbeiten?</translation>
         <translation>; {0:.2f} dB auf einigen neuen Ansichten</translation>
     </message>
     <message>
-        <source>Breaking off; the state is being kept ...</source>
-        <translation>Abbruch; der Stand wird gesichert ...</translation>
+        <source>Cancelling; the state is being kept ...</source>
+        <translation>Wird abgebrochen; der Stand wird aufgehoben ...</translation>
     </message>
     <message>
         <source>Stops as soon as there is a model: {0}</source>
@@ -7205,6 +7237,18 @@ Damit weiterarbeiten?</translation>
         <translation>Einsatz {0}</translation>
     </message>
     <message>
+        <source>not drawn: panels show values</source>
+        <translation>nicht gezeichnet: Scheiben zeigen Werte</translation>
+    </message>
+    <message>
+        <source>drawn at rest only: a frame takes {0} ms, turning smoothly allows {1} ms</source>
+        <translation>nur in Ruhe gezeichnet: Ein Bild braucht {0} ms, flüssiges Drehen erlaubt {1} ms</translation>
+    </message>
+    <message>
+        <source>drawn always: a frame takes {0} ms, turning smoothly allows {1} ms</source>
+        <translation>immer gezeichnet: Ein Bild braucht {0} ms, flüssiges Drehen erlaubt {1} ms</translation>
+    </message>
+    <message>
         <source>Routes</source>
         <translation>Routen</translation>
     </message>
@@ -7569,6 +7613,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation> ({0}-mal, zuerst: {1})</translation>
     </message>
     <message>
+        <source>&apos;{0}&apos; has heights of exactly 0 m that lie {1} m or more off all heights around them, and does not say which value means that a height is not known: its zeros count as not known; where 0 m is the ground, write such a value into the file (gdal_edit.py -a_nodata -9999 FILE)</source>
+        <translation>&apos;{0}&apos; hat Höhen von genau 0 m, die {1} m oder mehr von allen Höhen ringsum abweichen, und sagt nicht, welcher Wert eine unbekannte Höhe bedeutet: ihre Nullen zählen als unbekannt; wo der Boden auf 0 m liegt, schreiben Sie einen solchen Wert in die Datei (gdal_edit.py -a_nodata -9999 DATEI)</translation>
+    </message>
+    <message>
         <source>&apos;{0}&apos; is given twice</source>
         <translation>&apos;{0}&apos; ist zweimal angegeben</translation>
     </message>
@@ -7701,10 +7749,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>&apos;{0}&apos; ({1}{2}, {3})</translation>
     </message>
     <message>
-        <source>&apos;{0}&apos; cannot be read, it is &apos;{1}&apos;</source>
-        <translation>&apos;{0}&apos; ist nicht lesbar, dort steht &apos;{1}&apos;</translation>
-    </message>
-    <message>
         <source>&apos;{0}&apos; is nothing that heights are above; expected ellipsoid, egm96, egm2008 or the code of a height system such as EPSG:7837</source>
         <translation>&apos;{0}&apos; ist nichts, worüber Höhen gezählt werden; erwartet: ellipsoid, egm96, egm2008 oder der Code eines Höhensystems wie EPSG:7837</translation>
     </message>
@@ -7777,6 +7821,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>; {0} Scheiben verloren</translation>
     </message>
     <message>
+        <source>A border that the autopilot itself keeps, link or none: where the aircraft would leave it, it returns, lands or stops.</source>
+        <translation>Eine Grenze, die der Autopilot selbst einhält, mit oder ohne Funk: Würde das Fluggerät sie verlassen, kehrt es zurück, landet oder hält an.</translation>
+    </message>
+    <message>
         <source>A folder with one page that shows the model and all records in any browser, without a network.</source>
         <translation>Ein Ordner mit einer Seite, die das Modell und alle Einträge in jedem Browser zeigt, ohne Netz.</translation>
     </message>
@@ -7797,20 +7845,64 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Fluggerät {0}: {1}</translation>
     </message>
     <message>
+        <source>An area in which the authority forbids flying or asks for an authorisation, within heights and times. Its file comes from the publisher.</source>
+        <translation>Ein Gebiet, in dem die Behörde das Fliegen verbietet oder eine Genehmigung verlangt, in bestimmten Höhen und zu bestimmten Zeiten. Die Datei kommt vom Herausgeber.</translation>
+    </message>
+    <message>
+        <source>Aperture</source>
+        <translation>Blende</translation>
+    </message>
+    <message>
         <source>ArduPilot, dataflash log</source>
         <translation>ArduPilot, Dataflash-Log</translation>
+    </message>
+    <message>
+        <source>Battery</source>
+        <translation>Akku</translation>
+    </message>
+    <message>
+        <source>Braking tilt</source>
+        <translation>Neigung beim Bremsen</translation>
+    </message>
+    <message>
+        <source>Buffer</source>
+        <translation>Puffer</translation>
     </message>
     <message>
         <source>COLMAP model: the rational distortion of camera {0} is {1} px from the nearest polynomial; expected at most {2} px; undistort the images in COLMAP (image_undistorter)</source>
         <translation>COLMAP-Modell: die rationale Verzeichnung der Kamera {0} ist {1} px vom nächsten Polynom entfernt; erwartet werden höchstens {2} px; die Bilder in COLMAP entzerren (image_undistorter)</translation>
     </message>
     <message>
+        <source>Camera</source>
+        <translation>Kamera</translation>
+    </message>
+    <message>
+        <source>Camera direction</source>
+        <translation>Blickrichtung</translation>
+    </message>
+    <message>
         <source>Check</source>
         <translation>Prüfen</translation>
     </message>
     <message>
+        <source>Coarse model</source>
+        <translation>Grobmodell</translation>
+    </message>
+    <message>
+        <source>Colour temperature</source>
+        <translation>Farbtemperatur</translation>
+    </message>
+    <message>
         <source>Connect</source>
         <translation>Verbinden</translation>
+    </message>
+    <message>
+        <source>Contingency volume</source>
+        <translation>Contingency-Volumen</translation>
+    </message>
+    <message>
+        <source>Corrections by which GNSS knows its place to centimetres instead of metres. They come from a base station, over the network by NTRIP: a caster sends those of one mount point.</source>
+        <translation>Korrekturen, mit denen GNSS seinen Ort auf Zentimeter statt auf Meter kennt. Sie kommen von einer Basisstation, über das Netz per NTRIP: Ein Caster sendet die eines Mountpoints.</translation>
     </message>
     <message>
         <source>DJI (.kmz)</source>
@@ -8141,14 +8233,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein Raster in Schritten von {0} m hat unter diesem Luftraum mehr als {1} Knoten; eine größere Schrittweite erlauben</translation>
     </message>
     <message>
-        <source>a height is counted from &apos;{0}&apos;; expected AGL, AMSL or WGS84</source>
-        <translation>eine Höhe zählt ab &apos;{0}&apos;; erwartet wird AGL, AMSL oder WGS84</translation>
-    </message>
-    <message>
-        <source>a height is in &apos;{0}&apos;; expected metres or feet</source>
-        <translation>eine Höhe steht in &apos;{0}&apos;; erwartet werden Meter oder Fuß</translation>
-    </message>
-    <message>
         <source>a map in PMTiles format</source>
         <translation>eine Karte im Format PMTiles</translation>
     </message>
@@ -8281,10 +8365,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein Fluggerät, das von selbst zurückkehrt, flöge {0}; die Obergrenze des Luftraums anheben</translation>
     </message>
     <message>
-        <source>an area has no outline</source>
-        <translation>eine Fläche hat keinen Umriss</translation>
-    </message>
-    <message>
         <source>an independent check finds that claims are false ({0} of {1}): {2}</source>
         <translation>eine unabhängige Prüfung findet falsche Aussagen ({0} von {1}): {2}</translation>
     </message>
@@ -8397,10 +8477,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Unschärfe</translation>
     </message>
     <message>
-        <source>bodies of the site take so much sun from a pane on this day</source>
-        <translation>so viel Sonne nehmen Körper des Standorts einer Scheibe an diesem Tag</translation>
-    </message>
-    <message>
         <source>bows of panes</source>
         <translation>Wölbung der Scheiben</translation>
     </message>
@@ -8427,10 +8503,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>cannot be decoded as a picture</source>
         <translation>lässt sich nicht als Bild lesen</translation>
-    </message>
-    <message>
-        <source>cannot be read as a GeoTIFF ({0}); copy it again</source>
-        <translation>kann nicht als GeoTIFF gelesen werden ({0}); noch einmal kopieren</translation>
     </message>
     <message>
         <source>cannot be read as weights (safetensors, or tensors that torch.save wrote); get the file again</source>
@@ -9611,6 +9683,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>mit Start um {2} spiegelt Glas die Sonne in {0} von {1} Fotos</translation>
     </message>
     <message>
+        <source>global products with posts so far apart (SRTM)</source>
+        <translation>weltweiten Produkten mit so weit entfernten Stützpunkten (SRTM)</translation>
+    </message>
+    <message>
         <source>ground risk class: not known</source>
         <translation>Bodenrisikoklasse: nicht bekannt</translation>
     </message>
@@ -9809,6 +9885,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>home lies {0} m above the terrain; move it where that is not meant</source>
         <translation>der Startplatz liegt {0} m über dem Gelände; verschieben, wenn das nicht gemeint ist</translation>
+    </message>
+    <message>
+        <source>home lies {0} m off the terrain, which is good to {1} m; {2}</source>
+        <translation>der Startplatz liegt {0} m neben dem Gelände, das auf {1} m genau ist; {2}</translation>
     </message>
     <message>
         <source>home was put on the terrain, {0} m from where it was</source>
@@ -10253,10 +10333,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>its heights, here {0} m above the ellipsoid, are those of no geoid; is it damaged, or something else?</source>
         <translation>seine Höhen, hier {0} m über dem Ellipsoid, sind die keines Geoids; ist es beschädigt oder etwas anderes?</translation>
-    </message>
-    <message>
-        <source>its lower limit &apos;{0}&apos; lies above the upper one &apos;{1}&apos;</source>
-        <translation>ihre Untergrenze &apos;{0}&apos; liegt über der Obergrenze &apos;{1}&apos;</translation>
     </message>
     <message>
         <source>its mask cannot be used ({0}); it was left out</source>
@@ -10851,10 +10927,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>keine Zone von {0} wurde gemieden: {1}</translation>
     </message>
     <message>
-        <source>nobody has said where the site is, or how large: make its coarse model again with --origin, and with a distance or control points, or set its origin on the Site tab once its size is known</source>
-        <translation>niemand hat gesagt, wo der Standort ist, oder wie groß: machen Sie sein Grobmodell noch einmal mit --origin und mit einer Strecke oder Passpunkten, oder setzen Sie seinen Ursprung im Reiter Standort, sobald seine Größe bekannt ist</translation>
-    </message>
-    <message>
         <source>nobody who is not involved (controlled ground area)</source>
         <translation>niemand Unbeteiligtes (kontrollierter Bodenbereich)</translation>
     </message>
@@ -10923,10 +10995,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>kein KML, oder beschädigt ({0}); erneut exportieren</translation>
     </message>
     <message>
-        <source>not a GeoTIFF that can be shown ({0}); export it again</source>
-        <translation>kein GeoTIFF, das gezeigt werden kann ({0}); erneut exportieren</translation>
-    </message>
-    <message>
         <source>not a map in PMTiles format, or damaged ({0}); choose another file, or export the map again</source>
         <translation>keine Karte im Format PMTiles, oder beschädigt ({0}); eine andere Datei wählen oder die Karte erneut exportieren</translation>
     </message>
@@ -10965,6 +11033,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>not supported; expected an instance without fixed edges</source>
         <translation>nicht unterstützt; erwartet wird eine Aufgabe ohne feste Kanten</translation>
+    </message>
+    <message>
+        <source>not valid XML ({0}): it is cut off or damaged; download it again</source>
+        <translation>kein gültiges XML ({0}): die Datei ist abgeschnitten oder beschädigt; laden Sie sie erneut</translation>
     </message>
     <message>
         <source>not written</source>
@@ -11107,6 +11179,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>eines der Argumente %s ist nötig</translation>
     </message>
     <message>
+        <source>one of them is wrong: attach the right terrain, or bring it to home (&apos;--shift home&apos;)</source>
+        <translation>eines von beiden stimmt nicht: fügen Sie das richtige Gelände hinzu, oder bringen Sie es auf die Höhe des Startplatzes (&apos;--shift home&apos;)</translation>
+    </message>
+    <message>
         <source>one that this ground station had not put there was removed, as the pilot said ({0})</source>
         <translation>einer, der nicht von dieser Bodenstation war, wurde auf Weisung des Piloten entfernt ({0})</translation>
     </message>
@@ -11161,6 +11237,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>overexposed photos</source>
         <translation>überbelichtete Fotos</translation>
+    </message>
+    <message>
+        <source>overlay {0} lies {1} km from the site, and the map stays where it is; remove it in Layers where it is the wrong file</source>
+        <translation>die Auflage {0} liegt {1} km vom Standort, und die Karte bleibt, wo sie ist; nehmen Sie sie unter Ebenen heraus, wenn es die falsche Datei ist</translation>
     </message>
     <message>
         <source>overrule this line to remove it, or change it with the program that set it</source>
@@ -11643,6 +11723,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Einstellung</translation>
     </message>
     <message>
+        <source>shade of the building and obstacles on a pane on this day, in the mean</source>
+        <translation>Schatten von Gebäude und Hindernissen auf einer Scheibe an diesem Tag, im Mittel</translation>
+    </message>
+    <message>
         <source>share of the error</source>
         <translation>Anteil am Fehler</translation>
     </message>
@@ -11865,6 +11949,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>sun over the pilot</source>
         <translation>Sonne über dem Piloten</translation>
+    </message>
+    <message>
+        <source>surveys from the air (USGS)</source>
+        <translation>Vermessungen aus der Luft (USGS)</translation>
     </message>
     <message>
         <source>symbol</source>
@@ -12099,6 +12187,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das Ellipsoid</translation>
     </message>
     <message>
+        <source>the facade grid is on building &apos;{0}&apos;</source>
+        <translation>das Fassadenraster liegt auf Gebäude &apos;{0}&apos;</translation>
+    </message>
+    <message>
         <source>the facade&apos;s horizon runs through its middle: it is seen edge-on, or the lines are wrong</source>
         <translation>der Horizont der Fassade geht durch ihre Mitte: sie ist von der Kante zu sehen, oder die Linien sind falsch</translation>
     </message>
@@ -12115,20 +12207,8 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>der Zaun von {0} hat Platz für {1} Ecken: Diese Zone ist mit {2} statt {3} gezeichnet, bis zu {4} m außen herum</translation>
     </message>
     <message>
-        <source>the file does not say when this applies</source>
-        <translation>die Datei sagt nicht, wann das gilt</translation>
-    </message>
-    <message>
         <source>the file does not say where this zone lies</source>
         <translation>die Datei sagt nicht, wo diese Zone liegt</translation>
-    </message>
-    <message>
-        <source>the file gives no lower limit</source>
-        <translation>die Datei nennt keine Untergrenze</translation>
-    </message>
-    <message>
-        <source>the file gives no upper limit</source>
-        <translation>die Datei nennt keine Obergrenze</translation>
     </message>
     <message>
         <source>the file is protected</source>
@@ -12205,14 +12285,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the ground-risk buffer reaches into the no-fly zone &apos;{0}&apos;</source>
         <translation>der Bodenrisikopuffer reicht in die Flugverbotszone &apos;{0}&apos;</translation>
-    </message>
-    <message>
-        <source>the height &apos;{0}&apos; cannot be read</source>
-        <translation>die Höhe &apos;{0}&apos; ist nicht lesbar</translation>
-    </message>
-    <message>
-        <source>the height &apos;{0}&apos; does not say whether it is above ground or sea</source>
-        <translation>die Höhe &apos;{0}&apos; sagt nicht, ob sie über Grund oder über dem Meer zählt</translation>
     </message>
     <message>
         <source>the heights are damaged (expected {0} nodes, found {1}); attach the terrain again</source>
@@ -12851,10 +12923,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das sieht nach der Karte einer Kamera aus (sie hat einen Ordner DCIM); DJI Pilot 2 liest die Karte in der Fernsteuerung</translation>
     </message>
     <message>
-        <source>this place is {0} km from the site; move the site&apos;s zero there first</source>
-        <translation>dieser Ort liegt {0} km vom Standort entfernt; zuerst den Nullpunkt dorthin setzen</translation>
-    </message>
-    <message>
         <source>this source begins on {0} only</source>
         <translation>diese Quelle beginnt erst am {0}</translation>
     </message>
@@ -13255,8 +13323,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0}: andere Programme suchen {1}-Dateien mit Namen, die auf {2} enden</translation>
     </message>
     <message>
+        <source>{0}: there is no path yet, so how near it comes is not known</source>
+        <translation>{0}: es gibt noch keinen Weg; wie nahe er kommt, ist deshalb nicht bekannt</translation>
+    </message>
+    <message>
         <source>{0}: unseen views</source>
         <translation>{0}: neue Ansichten</translation>
+    </message>
+    <message>
+        <source>{0}: where it lies cannot be read for sure in &apos;{1}&apos;: {2}. So nobody can say that flights stay out of it. Look it up, or ask {3}; then add the corrected file, or state who answered what (--permit)</source>
+        <translation>{0}: wo sie liegt, ist in &apos;{1}&apos; nicht sicher zu lesen: {2}. Deshalb kann niemand sagen, dass Flüge draußen bleiben. Sehen Sie nach, oder fragen Sie {3}; fügen Sie dann die berichtigte Datei hinzu, oder geben Sie an, wer was geantwortet hat (--permit)</translation>
+    </message>
+    <message>
+        <source>{0}: where it lies is not sure; answered by &apos;{1}&apos;</source>
+        <translation>{0}: wo sie liegt, ist nicht sicher; beantwortet durch &apos;{1}&apos;</translation>
     </message>
     <message>
         <source>{0}: zones {1}, within {2} m of the airspace {3}; SHA-256 {4}</source>
@@ -14031,14 +14111,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>erwartet wurden Aufnahmen des Einsatzes, gefunden {0}</translation>
     </message>
     <message>
-        <source>{0} of the {1} sections that flights can cover are covered ({2}): plan with more --views, or a --coverage</source>
-        <translation>{0} der {1} Sektoren, die Flüge abdecken können, sind abgedeckt ({2}): mit mehr --views oder einer --coverage planen</translation>
-    </message>
-    <message>
-        <source>the site lies where its BIM file says, which is often just the city: compare it with a map, and give its --origin</source>
-        <translation>der Standort liegt, wo seine BIM-Datei ihn angibt, was oft nur die Stadt ist: mit einer Karte vergleichen und seinen --origin angeben</translation>
-    </message>
-    <message>
         <source>a sortie has {0} photos, and {1} keeps items for {2}: it is shared out among more sorties before it is uploaded</source>
         <translation>ein Einsatz hat {0} Fotos, und {1} speichert Punkte für {2}: er wird vor dem Hochladen auf mehr Einsätze verteilt</translation>
     </message>
@@ -14065,10 +14137,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>what cold takes from the batteries is not looked at (--temperature)</source>
         <translation>was Kälte den Akkus nimmt, wird nicht betrachtet (--temperature)</translation>
-    </message>
-    <message>
-        <source>at {0} degrees a battery gives some {1} of its charge, {2} s above the reserve, and the longest sortie takes {3} s: warm the batteries to 20 degrees, or plan shorter sorties with a larger --reserve</source>
-        <translation>bei {0} Grad gibt ein Akku etwa {1} seiner Ladung ab, {2} s über der Reserve, und der längste Einsatz dauert {3} s: die Akkus auf 20 Grad wärmen oder mit größerer --reserve kürzere Einsätze planen</translation>
     </message>
     <message>
         <source>at {0} degrees a battery gives some {1} of its charge, and that is enough</source>
@@ -14405,10 +14473,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} in sorties that were not flown</source>
         <translation>{0} in Einsätzen, die nicht geflogen wurden</translation>
-    </message>
-    <message>
-        <source>{0} of the {1} sections that flights can cover are covered ({2}): plan more views, or a share of coverage</source>
-        <translation>{0} der {1} Sektoren, die Flüge abdecken können, sind abgedeckt ({2}): mehr Aufnahmen planen oder einen Anteil der Abdeckung</translation>
     </message>
     <message>
         <source>{0} photographed from too far away</source>
@@ -15011,10 +15075,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Gröbste GSD</translation>
     </message>
     <message>
-        <source>Corrections by which GNSS knows its place to centimetres instead of metres.</source>
-        <translation>Korrekturen, mit denen GNSS seinen Ort auf Zentimeter statt auf Meter kennt.</translation>
-    </message>
-    <message>
         <source>Count whole panels only</source>
         <translation>Nur ganze Scheiben</translation>
     </message>
@@ -15035,6 +15095,38 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Gleiche Scheiben in Reihen und Spalten, in ein Rechteck auf einer Wand gelegt.</translation>
     </message>
     <message>
+        <source>Exposure</source>
+        <translation>Belichtung</translation>
+    </message>
+    <message>
+        <source>Exposure compensation</source>
+        <translation>Belichtungskorrektur</translation>
+    </message>
+    <message>
+        <source>File of geo-zones</source>
+        <translation>Datei mit Geozonen</translation>
+    </message>
+    <message>
+        <source>Flight geography</source>
+        <translation>Fluggeographie</translation>
+    </message>
+    <message>
+        <source>Flight record</source>
+        <translation>Flugaufzeichnung</translation>
+    </message>
+    <message>
+        <source>Focus</source>
+        <translation>Fokus</translation>
+    </message>
+    <message>
+        <source>Focus distance</source>
+        <translation>Fokusentfernung</translation>
+    </message>
+    <message>
+        <source>Full speed</source>
+        <translation>Volle Geschwindigkeit</translation>
+    </message>
+    <message>
         <source>GNSS</source>
         <translation>GNSS</translation>
     </message>
@@ -15047,32 +15139,100 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>GSD</translation>
     </message>
     <message>
+        <source>Geo-zone</source>
+        <translation>Geozone</translation>
+    </message>
+    <message>
+        <source>Geo-zones</source>
+        <translation>Geozonen</translation>
+    </message>
+    <message>
+        <source>Geofence</source>
+        <translation>Geofence</translation>
+    </message>
+    <message>
+        <source>Geofence of others</source>
+        <translation>Geofence anderer</translation>
+    </message>
+    <message>
+        <source>Geofence on board</source>
+        <translation>Geofence an Bord</translation>
+    </message>
+    <message>
+        <source>Geoid</source>
+        <translation>Geoid</translation>
+    </message>
+    <message>
+        <source>Grid of the geoid</source>
+        <translation>Gitter des Geoids</translation>
+    </message>
+    <message>
+        <source>Ground risk</source>
+        <translation>Bodenrisiko</translation>
+    </message>
+    <message>
         <source>Ground risk by SORA 2.5: {0}</source>
         <translation>Bodenrisiko nach SORA 2.5: {0}</translation>
+    </message>
+    <message>
+        <source>Ground risk class (iGRC)</source>
+        <translation>Bodenrisikoklasse (iGRC)</translation>
     </message>
     <message>
         <source>Ground sampling distance: how much of the facade one pixel shows. 2.7 mm shows a scratch, 20 mm a frame.</source>
         <translation>Ground Sampling Distance: wie viel der Fassade ein Pixel zeigt. 2.7 mm zeigen einen Kratzer, 20 mm einen Rahmen.</translation>
     </message>
     <message>
+        <source>Ground-risk buffer</source>
+        <translation>Bodenrisiko-Puffer</translation>
+    </message>
+    <message>
         <source>Height above the WGS 84 ellipsoid, as GNSS measures it. It is no height above the sea.</source>
         <translation>Höhe über dem Ellipsoid WGS 84, wie GNSS sie misst. Sie ist keine Höhe über dem Meer.</translation>
+    </message>
+    <message>
+        <source>Heights</source>
+        <translation>Höhen</translation>
     </message>
     <message>
         <source>Heights are</source>
         <translation>Höhen sind</translation>
     </message>
     <message>
+        <source>Heights are above</source>
+        <translation>Höhen zählen ab</translation>
+    </message>
+    <message>
+        <source>Home</source>
+        <translation>Startplatz</translation>
+    </message>
+    <message>
+        <source>How long the sensor gathers light. Short times blur less in flight. A mechanical shutter takes the picture at once; an electronic one line by line, which skews what is passed.</source>
+        <translation>Wie lange der Sensor Licht sammelt. Kurze Zeiten verwischen im Flug weniger. Ein mechanischer Verschluss nimmt das Bild auf einmal auf, ein elektronischer Zeile für Zeile; das verzerrt, woran man vorbeifliegt.</translation>
+    </message>
+    <message>
         <source>How many times faster than real time a simulated vehicle flies.</source>
         <translation>Wie viel schneller als in Wirklichkeit ein simuliertes Fluggerät fliegt.</translation>
+    </message>
+    <message>
+        <source>How much light a photo gets, by shutter time, aperture and ISO. A model needs the same for all photos of a sortie.</source>
+        <translation>Wie viel Licht ein Foto bekommt: durch Verschlusszeit, Blende und ISO. Ein Modell braucht für alle Fotos eines Einsatzes dieselbe.</translation>
     </message>
     <message>
         <source>How viewpoints are chosen. The optimised one takes the viewpoint that adds most, again and again, and proves how far from the best it can be; the others are there to compare with.</source>
         <translation>Wie Aufnahmepunkte gewählt werden. Das optimierte Verfahren nimmt immer wieder den Punkt, der am meisten bringt, und beweist, wie weit es höchstens vom besten entfernt ist; die anderen sind zum Vergleich da.</translation>
     </message>
     <message>
+        <source>ISO</source>
+        <translation>ISO</translation>
+    </message>
+    <message>
         <source>LPIPS unavailable: get its weights by &apos;score weights&apos;, or name them (--lpips)</source>
         <translation>LPIPS nicht verfügbar: Gewichte mit „score weights“ holen oder nennen (--lpips)</translation>
+    </message>
+    <message>
+        <source>Largest dimension</source>
+        <translation>Größte Abmessung</translation>
     </message>
     <message>
         <source>Layer</source>
@@ -15083,6 +15243,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Verbindung</translation>
     </message>
     <message>
+        <source>M1 and M2</source>
+        <translation>M1 und M2</translation>
+    </message>
+    <message>
         <source>M1(A) medium and M1(B) count the same people; state one of them</source>
         <translation>M1(A) medium und M1(B) zählen dieselben Menschen; geben Sie eines davon an</translation>
     </message>
@@ -15091,8 +15255,40 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>M1(A) braucht Gebäude, die das Fluggerät abhalten: Glasdächer und Glasfassaden tun das vielleicht nicht</translation>
     </message>
     <message>
+        <source>M1(A) sheltering</source>
+        <translation>M1(A) Schutz durch Gebäude</translation>
+    </message>
+    <message>
+        <source>M1(B) restrictions</source>
+        <translation>M1(B) Einschränkungen</translation>
+    </message>
+    <message>
+        <source>M1(C) ground observation</source>
+        <translation>M1(C) Bodenbeobachtung</translation>
+    </message>
+    <message>
+        <source>M2 softer impact</source>
+        <translation>M2 milderer Aufprall</translation>
+    </message>
+    <message>
+        <source>Map error</source>
+        <translation>Kartenfehler</translation>
+    </message>
+    <message>
         <source>Method</source>
         <translation>Verfahren</translation>
+    </message>
+    <message>
+        <source>Mirrored light is learned as</source>
+        <translation>Gespiegeltes Licht wird gelernt als</translation>
+    </message>
+    <message>
+        <source>Mission file</source>
+        <translation>Missionsdatei</translation>
+    </message>
+    <message>
+        <source>NTRIP</source>
+        <translation>NTRIP</translation>
     </message>
     <message>
         <source>Not covered</source>
@@ -15103,8 +15299,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Näher kommt der Flug Scheiben, Gebäude und Hindernissen nirgends.</translation>
     </message>
     <message>
+        <source>Operator number</source>
+        <translation>Betreibernummer</translation>
+    </message>
+    <message>
         <source>Own poses</source>
         <translation>Eigene Posen</translation>
+    </message>
+    <message>
+        <source>Panels</source>
+        <translation>Scheiben</translation>
+    </message>
+    <message>
+        <source>People below</source>
+        <translation>Menschen darunter</translation>
+    </message>
+    <message>
+        <source>Photos</source>
+        <translation>Fotos</translation>
     </message>
     <message>
         <source>Photos with their poses, and the panels of the site: what a model learns from.</source>
@@ -15115,12 +15327,36 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Lage auf der Erde</translation>
     </message>
     <message>
+        <source>Planning</source>
+        <translation>Planung</translation>
+    </message>
+    <message>
         <source>Pose</source>
         <translation>Pose</translation>
     </message>
     <message>
+        <source>Poses</source>
+        <translation>Posen</translation>
+    </message>
+    <message>
+        <source>Position hold error</source>
+        <translation>Fehler beim Halten der Position</translation>
+    </message>
+    <message>
+        <source>Positions</source>
+        <translation>Positionen</translation>
+    </message>
+    <message>
         <source>Precision</source>
         <translation>Genauigkeit</translation>
+    </message>
+    <message>
+        <source>Project</source>
+        <translation>Projekt</translation>
+    </message>
+    <message>
+        <source>Proof</source>
+        <translation>Beweis</translation>
     </message>
     <message>
         <source>Quality</source>
@@ -15131,12 +15367,60 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>RTK</translation>
     </message>
     <message>
+        <source>RTK corrections</source>
+        <translation>RTK-Korrekturen</translation>
+    </message>
+    <message>
+        <source>Radiance grid</source>
+        <translation>Strahlungsgitter</translation>
+    </message>
+    <message>
         <source>Rally point</source>
         <translation>Rally-Punkt</translation>
     </message>
     <message>
+        <source>Rally points</source>
+        <translation>Rally-Punkte</translation>
+    </message>
+    <message>
+        <source>Reaction</source>
+        <translation>Reaktion</translation>
+    </message>
+    <message>
         <source>Refine poses</source>
         <translation>Posen verfeinern</translation>
+    </message>
+    <message>
+        <source>Remote ID</source>
+        <translation>Remote ID</translation>
+    </message>
+    <message>
+        <source>Return height</source>
+        <translation>Rückkehrhöhe</translation>
+    </message>
+    <message>
+        <source>Route</source>
+        <translation>Route</translation>
+    </message>
+    <message>
+        <source>SORA: 1 to 10 by who is below, and by size and speed of the aircraft, before anything lessens the risk; M1 and M2 lower it to the final class.</source>
+        <translation>SORA: 1 bis 10 danach, wer darunter ist, und nach Größe und Geschwindigkeit des Fluggeräts, bevor etwas das Risiko mindert; M1 und M2 senken sie zur endgültigen Klasse.</translation>
+    </message>
+    <message>
+        <source>SORA: the ground beyond the contingency volume that the aircraft may hit when it falls out of that.</source>
+        <translation>SORA: der Boden jenseits des Contingency-Volumens, auf den das Fluggerät fallen kann, wenn es daraus abstürzt.</translation>
+    </message>
+    <message>
+        <source>SORA: the space around the flight geography in which a flight that left it is brought back. Reaction, braking and errors of the place make it wide.</source>
+        <translation>SORA: der Raum um die Fluggeographie, in dem ein Flug, der sie verlassen hat, zurückgeholt wird. Reaktion, Bremsen und Fehler des Ortes machen ihn breit.</translation>
+    </message>
+    <message>
+        <source>SORA: the space in which the flight is meant to stay.</source>
+        <translation>SORA: der Raum, in dem der Flug bleiben soll.</translation>
+    </message>
+    <message>
+        <source>SORA: what lessens the ground risk. M1: fewer people are exposed, by shelter, place and time, or an observer. M2: the impact is softer.</source>
+        <translation>SORA: was das Bodenrisiko mindert. M1: Weniger Menschen sind ausgesetzt, durch Schutz, Ort und Zeit oder einen Beobachter. M2: Der Aufprall ist milder.</translation>
     </message>
     <message>
         <source>Safety distance</source>
@@ -15147,8 +15431,36 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Sektorweite</translation>
     </message>
     <message>
+        <source>Sensitivity of the sensor. Twice the number needs half the light, and has more noise.</source>
+        <translation>Empfindlichkeit des Sensors. Die doppelte Zahl braucht halb so viel Licht und rauscht mehr.</translation>
+    </message>
+    <message>
+        <source>Serial number</source>
+        <translation>Seriennummer</translation>
+    </message>
+    <message>
+        <source>Sharpness</source>
+        <translation>Schärfe</translation>
+    </message>
+    <message>
+        <source>Shutter</source>
+        <translation>Verschluss</translation>
+    </message>
+    <message>
+        <source>Shutter time</source>
+        <translation>Verschlusszeit</translation>
+    </message>
+    <message>
+        <source>Signal lost</source>
+        <translation>Signalverlust</translation>
+    </message>
+    <message>
         <source>Single precision counts sections several times as fast, and errs on borders of sections alone.</source>
         <translation>Einfache Genauigkeit zählt Sektoren um ein Mehrfaches schneller und irrt nur an Grenzen von Sektoren.</translation>
+    </message>
+    <message>
+        <source>Site</source>
+        <translation>Standort</translation>
     </message>
     <message>
         <source>Site origin</source>
@@ -15159,12 +15471,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Einsatz</translation>
     </message>
     <message>
+        <source>Sorties</source>
+        <translation>Einsätze</translation>
+    </message>
+    <message>
         <source>Speed-up</source>
         <translation>Zeitraffer</translation>
     </message>
     <message>
         <source>Splat</source>
         <translation>Splat</translation>
+    </message>
+    <message>
+        <source>Sun</source>
+        <translation>Sonne</translation>
     </message>
     <message>
         <source>Target coverage</source>
@@ -15183,8 +15503,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Die Verbindung zum Fluggerät. Eine signierte nimmt von anderen keine Befehle an.</translation>
     </message>
     <message>
+        <source>The distance that is sharpest. It is locked for a sortie, for glass misleads an automatic one.</source>
+        <translation>Die Entfernung, in der es am schärfsten ist. Der Fokus ist für einen Einsatz fixiert, denn Glas führt einen automatischen in die Irre.</translation>
+    </message>
+    <message>
+        <source>The height above take-off at which the aircraft flies straight home when it returns by itself. It must clear everything that may stand below.</source>
+        <translation>Die Höhe über Start, in der das Fluggerät geradewegs zum Startplatz fliegt, wenn es von selbst zurückkehrt. Sie muss über allem liegen, was darunter stehen kann.</translation>
+    </message>
+    <message>
+        <source>The level of the sea, carried on below the land. Heights above sea level count from it; it lies up to 100 m above or below the ellipsoid. EGM96 and EGM2008 are grids of it.</source>
+        <translation>Der Meeresspiegel, unter dem Land fortgesetzt. Höhen über Meer zählen ab ihm; er liegt bis zu 100 m über oder unter dem Ellipsoid. EGM96 und EGM2008 sind Gitter davon.</translation>
+    </message>
+    <message>
         <source>The longest that the search may take. It ends sooner where nothing can be won any more.</source>
         <translation>So lange darf die Suche höchstens dauern. Sie endet früher, wenn nichts mehr zu gewinnen ist.</translation>
+    </message>
+    <message>
+        <source>The number under which the authority registered the operator. Remote ID broadcasts it without its secret last three characters, which prove that it was typed right.</source>
+        <translation>Die Nummer, unter der die Behörde den Betreiber registriert hat. Remote ID sendet sie ohne ihre geheimen letzten drei Zeichen; die beweisen, dass sie richtig eingegeben ist.</translation>
     </message>
     <message>
         <source>The place on earth from which the site counts metres east, north and up.</source>
@@ -15231,8 +15567,32 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Was simuliert wird, weil diese Szene es verlangt; jeder sagt, wie groß er ist, warum, und was er kostet.</translation>
     </message>
     <message>
+        <source>What panes mirror, learned as a scene behind the glass: near things move in it as real ones do. It is stored in cells of a grid.</source>
+        <translation>Was Scheiben spiegeln, gelernt als Szene hinter dem Glas: Nahe Dinge bewegen sich darin wie wirkliche. Sie steht in den Zellen eines Gitters.</translation>
+    </message>
+    <message>
+        <source>What the aircraft broadcasts by radio of itself, its place and its operator, so that others nearby can tell who flies. It needs a serial number.</source>
+        <translation>Was das Fluggerät per Funk von sich, seinem Ort und seinem Betreiber sendet, damit andere in der Nähe wissen, wer fliegt. Es braucht eine Seriennummer.</translation>
+    </message>
+    <message>
         <source>Where a photo was taken, and in which direction the camera looked.</source>
         <translation>Wo ein Foto aufgenommen wurde, und in welche Richtung die Kamera sah.</translation>
+    </message>
+    <message>
+        <source>Which light counts as white. Fixed, as at 5500 K for daylight, all photos of a sortie show a colour alike.</source>
+        <translation>Welches Licht als weiß gilt. Fest eingestellt, etwa auf 5500 K für Tageslicht, zeigen alle Fotos eines Einsatzes eine Farbe gleich.</translation>
+    </message>
+    <message>
+        <source>White balance</source>
+        <translation>Weißabgleich</translation>
+    </message>
+    <message>
+        <source>Width of the lens as an f-number. A larger number lets less light in, and is sharp over more distances.</source>
+        <translation>Weite des Objektivs als Blendenzahl. Eine größere Zahl lässt weniger Licht ein und ist über mehr Entfernungen scharf.</translation>
+    </message>
+    <message>
+        <source>Wind</source>
+        <translation>Wind</translation>
     </message>
     <message>
         <source>Worth</source>
@@ -15299,6 +15659,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>eine Sitzungsbeschreibung</translation>
     </message>
     <message>
+        <source>a share of what can be covered is planned by sections; give --good-enough, --batteries or --views</source>
+        <translation>ein Anteil dessen, was abgedeckt werden kann, wird nach Abschnitten geplant; --good-enough, --batteries oder --views angeben</translation>
+    </message>
+    <message>
         <source>a straight return home may leave the paths; set hover or land for lost links, or take the hull</source>
         <translation>eine gerade Rückkehr kann die Pfade verlassen; stellen Sie für Verbindungsverlust Schweben oder Landen ein, oder nehmen Sie die Hülle</translation>
     </message>
@@ -15323,8 +15687,20 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Fluggerät {0}: {1}</translation>
     </message>
     <message>
+        <source>all its heights below the site are exactly 0 m, and it does not say which value means that a height is not known: take another file; where 0 m is the ground, write such a value into it (gdal_edit.py -a_nodata -9999 FILE), or attach no terrain</source>
+        <translation>alle ihre Höhen unter dem Standort sind genau 0 m, und sie sagt nicht, welcher Wert eine unbekannte Höhe bedeutet: nehmen Sie eine andere Datei; wo der Boden auf 0 m liegt, schreiben Sie einen solchen Wert hinein (gdal_edit.py -a_nodata -9999 DATEI), oder fügen Sie kein Gelände hinzu</translation>
+    </message>
+    <message>
+        <source>all of it lies below the ground here: is its upper limit right?</source>
+        <translation>hier liegt sie ganz unter dem Boden: stimmt ihre Obergrenze?</translation>
+    </message>
+    <message>
         <source>all photos</source>
         <translation>alle Fotos</translation>
+    </message>
+    <message>
+        <source>an area has no outline that can be read</source>
+        <translation>eine Fläche hat keinen lesbaren Umriss</translation>
     </message>
     <message>
         <source>an assembly of people</source>
@@ -15355,6 +15731,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>angenommen: {0}</translation>
     </message>
     <message>
+        <source>at {0} degrees a battery gives some {1} of its charge, {2} s above the reserve, and the longest sortie takes {3} s: warm the batteries to 20 degrees, or plan shorter sorties with a larger battery reserve (--reserve)</source>
+        <translation>bei {0} Grad gibt ein Akku etwa {1} seiner Ladung, {2} s über der Reserve, und der längste Einsatz dauert {3} s: die Akkus auf 20 Grad wärmen oder mit größerer Akkureserve (--reserve) kürzere Einsätze planen</translation>
+    </message>
+    <message>
         <source>authority: {0}</source>
         <translation>Behörde: {0}</translation>
     </message>
@@ -15373,6 +15753,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>browsers cannot mirror as this model does, by normals of splats or by a wide network: they show these colours</source>
         <translation>Browser können nicht so spiegeln wie dieses Modell, nämlich nach Normalen von Splats oder durch ein breites Netz: Sie zeigen diese Farben</translation>
+    </message>
+    <message>
+        <source>cannot be read as a GeoTIFF: it is cut off or damaged; copy or download it again, and compare its size with that at its source</source>
+        <translation>ist nicht als GeoTIFF lesbar: die Datei ist abgeschnitten oder beschädigt; kopieren oder laden Sie sie erneut, und vergleichen Sie ihre Größe mit der an der Quelle</translation>
     </message>
     <message>
         <source>climbed before the pilot acts</source>
@@ -15479,8 +15863,24 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>er kennt keinen Mountpoint dieses Namens; er hat {0}</translation>
     </message>
     <message>
+        <source>its lower limit &apos;{0}&apos; does not lie below the upper one &apos;{1}&apos;, so every height counts</source>
+        <translation>ihre Untergrenze &apos;{0}&apos; liegt nicht unter der Obergrenze &apos;{1}&apos;; deshalb zählt jede Höhe</translation>
+    </message>
+    <message>
         <source>keep its records, and export it for other programs</source>
         <translation>Einträge dazu führen, und es für andere Programme exportieren</translation>
+    </message>
+    <message>
+        <source>no terrain was given, so the ground counts as level at {0} m all around: where it rises, flights are lower above it than it says here; attach its heights (&apos;site terrain&apos;, or Terrain... in the Site tab)</source>
+        <translation>es wurde kein Gelände angegeben; der Boden zählt deshalb ringsum als eben auf {0} m: wo er ansteigt, liegen Flüge niedriger über ihm, als hier steht; fügen Sie seine Höhen hinzu (&apos;site terrain&apos;, oder Gelände... im Reiter Standort)</translation>
+    </message>
+    <message>
+        <source>nobody has said where the site is, or how large: make its coarse model again with its origin (--origin) and with a distance or control points, or set the site origin on the Site tab once its size is known</source>
+        <translation>niemand hat gesagt, wo der Standort ist, oder wie groß: machen Sie sein Grobmodell noch einmal mit Nullpunkt (--origin) und mit einer Strecke oder Passpunkten, oder setzen Sie den Nullpunkt im Reiter Standort, sobald seine Größe bekannt ist</translation>
+    </message>
+    <message>
+        <source>not a GeoTIFF that can be shown: it is cut off, damaged or of a kind that is not known here; copy or export it again</source>
+        <translation>kein GeoTIFF, das sich zeigen lässt: die Datei ist abgeschnitten, beschädigt oder von unbekannter Art; kopieren oder exportieren Sie sie erneut</translation>
     </message>
     <message>
         <source>sections seen only with pixels larger than {0} mm: {1} of {2} covered</source>
@@ -15511,12 +15911,60 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Definition der Kamera wurde geholt ({0}): {1} Parameter</translation>
     </message>
     <message>
+        <source>the field &apos;{0}&apos; cannot be read: it is &apos;{1}&apos;</source>
+        <translation>das Feld &apos;{0}&apos; ist nicht lesbar: darin steht &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>the field &apos;{0}&apos; is missing or empty</source>
+        <translation>das Feld &apos;{0}&apos; fehlt oder ist leer</translation>
+    </message>
+    <message>
+        <source>the file does not say what it restricts (field &apos;{0}&apos;), so it counts as prohibited</source>
+        <translation>die Datei sagt nicht, was sie beschränkt (Feld &apos;{0}&apos;); sie zählt deshalb als verboten</translation>
+    </message>
+    <message>
+        <source>the file does not say when this applies, so it counts at all times</source>
+        <translation>die Datei sagt nicht, wann das gilt; es zählt deshalb zu jeder Zeit</translation>
+    </message>
+    <message>
+        <source>the file gives no lower limit, so it counts from the ground up</source>
+        <translation>die Datei gibt keine Untergrenze an; sie zählt deshalb vom Boden an</translation>
+    </message>
+    <message>
+        <source>the file gives no upper limit, so it counts at any height above</source>
+        <translation>die Datei gibt keine Obergrenze an; sie zählt deshalb nach oben in jeder Höhe</translation>
+    </message>
+    <message>
+        <source>the files do not say how good their heights are: {0} m more are kept above the ground, as for {1}; another value can be given with --accuracy</source>
+        <translation>die Dateien sagen nicht, wie genau ihre Höhen sind: {0} m mehr werden über dem Boden eingehalten, wie bei {1}; ein anderer Wert lässt sich mit --accuracy angeben</translation>
+    </message>
+    <message>
+        <source>the foot of the building lies {0} m off the terrain, which is good to {1} m; {2}</source>
+        <translation>der Fuß des Gebäudes liegt {0} m neben dem Gelände, das auf {1} m genau ist; {2}</translation>
+    </message>
+    <message>
         <source>the geofence on board could not be read ({0}): it may be somebody else&apos;s, and stays</source>
         <translation>der Geofence an Bord ließ sich nicht lesen ({0}): Er kann von jemand anderem sein und bleibt</translation>
     </message>
     <message>
         <source>the geofence on board is read again: {0}</source>
         <translation>der Geofence an Bord wird noch einmal gelesen: {0}</translation>
+    </message>
+    <message>
+        <source>the height &apos;{0}&apos; cannot be read, so every height counts</source>
+        <translation>die Höhe &apos;{0}&apos; ist nicht lesbar; deshalb zählt jede Höhe</translation>
+    </message>
+    <message>
+        <source>the height &apos;{0}&apos; does not say whether it is above ground (AGL), sea level (AMSL) or the ellipsoid (WGS84), so every height counts</source>
+        <translation>die Höhe &apos;{0}&apos; sagt nicht, ob sie über Grund (AGL), Meer (AMSL) oder Ellipsoid (WGS84) gemeint ist; deshalb zählt jede Höhe</translation>
+    </message>
+    <message>
+        <source>the height &apos;{0}&apos; does not say whether it is above ground or sea, so every height counts</source>
+        <translation>die Höhe &apos;{0}&apos; sagt nicht, ob sie über Grund oder Meer gemeint ist; deshalb zählt jede Höhe</translation>
+    </message>
+    <message>
+        <source>the height &apos;{0}&apos; does not say whether it is in metres or feet, so every height counts</source>
+        <translation>die Höhe &apos;{0}&apos; sagt nicht, ob sie in Metern oder Fuß gemeint ist; deshalb zählt jede Höhe</translation>
     </message>
     <message>
         <source>the missions and their proof are written; the check of the proof was cancelled</source>
@@ -15549,6 +15997,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the processor, as you asked</source>
         <translation>der Prozessor, wie gewünscht</translation>
+    </message>
+    <message>
+        <source>the site lies where its BIM file says, which is often just the city: compare it with a map, and set the site origin (--origin)</source>
+        <translation>der Standort liegt, wo seine BIM-Datei sagt, und das ist oft nur die Stadt: mit einer Karte vergleichen und den Nullpunkt setzen (--origin)</translation>
     </message>
     <message>
         <source>the take-off lies outside of it, and the sortie leaves it by {0} m</source>
@@ -15605,6 +16057,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the worker {0} could not take the scene; see its own log</source>
         <translation>der Worker {0} konnte die Szene nicht übernehmen; siehe dessen Log</translation>
+    </message>
+    <message>
+        <source>there are no panels yet: find them in photos (Photos tab), or lay a facade grid on the building</source>
+        <translation>es gibt noch keine Scheiben: in Fotos suchen (Reiter Fotos) oder ein Fassadenraster auf das Gebäude legen</translation>
     </message>
     <message>
         <source>there are no records yet; make them with &apos;records FOLDER make&apos;</source>
@@ -15719,6 +16175,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>das ist ein eigener Standort, den der leere der Mission ersetzen würde; ihn mit --site nennen oder den Plan anders</translation>
     </message>
     <message>
+        <source>this place is {0} km from the site; move the site origin there first</source>
+        <translation>diese Stelle liegt {0} km vom Standort; zuerst den Nullpunkt dorthin verschieben</translation>
+    </message>
+    <message>
         <source>time</source>
         <translation>Zeit</translation>
     </message>
@@ -15815,6 +16275,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>was fehlt, ist nicht zu zeigen</translation>
     </message>
     <message>
+        <source>what it restricts is not known here, &apos;{0}&apos;, so it counts as prohibited</source>
+        <translation>was sie beschränkt, &apos;{0}&apos;, ist hier nicht bekannt; sie zählt deshalb als verboten</translation>
+    </message>
+    <message>
+        <source>what its element &apos;{0}&apos; shows is not read: look at it in another program</source>
+        <translation>was ihr Element &apos;{0}&apos; zeigt, wird nicht gelesen: sehen Sie es in einem anderen Programm an</translation>
+    </message>
+    <message>
         <source>what panes mirror, behind them up to infinity, out of focus</source>
         <translation>was Scheiben spiegeln, hinter ihnen bis unendlich, unscharf</translation>
     </message>
@@ -15827,10 +16295,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>was das Fahrzeug sendet, ergibt keinen Sinn; nehmen Sie die Karte heraus</translation>
     </message>
     <message>
-        <source>what {0} elements &apos;{1}&apos; show is not read; look at them yourself</source>
-        <translation>was {0} Elemente &apos;{1}&apos; zeigen, wird nicht gelesen; selbst ansehen</translation>
-    </message>
-    <message>
         <source>when it applies cannot be read</source>
         <translation>wann sie gilt, ist nicht lesbar</translation>
     </message>
@@ -15841,6 +16305,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>where home stands the files have no heights: no flight can be planned until home is moved</source>
         <translation>am Startplatz haben die Dateien keine Höhen: bis er verschoben ist, lässt sich kein Flug planen</translation>
+    </message>
+    <message>
+        <source>where it lies is an open question: no flight is ready until it is answered (--permit)</source>
+        <translation>wo sie liegt, ist eine offene Frage: kein Flug ist bereit, bis sie beantwortet ist (--permit)</translation>
     </message>
     <message>
         <source>where the ground is not known, the surface counts as ground</source>
@@ -16123,6 +16591,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0} der Fassade {1}</translation>
     </message>
     <message>
+        <source>{0} of the {1} sections that flights can cover are covered ({2}), which says what is seen and not how good the model will be: another battery would make its pictures {3} dB better</source>
+        <translation>{0} der {1} Abschnitte, die Flüge abdecken können, sind abgedeckt ({2}); das sagt, was gesehen wird, und nicht, wie gut das Modell wird: Ein weiterer Akku würde seine Bilder um {3} dB verbessern</translation>
+    </message>
+    <message>
+        <source>{0} of the {1} sections that flights can cover are covered ({2}): plan more views, or more batteries</source>
+        <translation>{0} der {1} Abschnitte, die Flüge abdecken können, sind abgedeckt ({2}): mehr Ansichten oder mehr Akkus planen</translation>
+    </message>
+    <message>
         <source>{0} of these with pixels up to {1} mm on the panel, the coarsest with {2} mm</source>
         <translation>{0} davon mit Pixeln bis {1} mm auf der Scheibe, die gröbsten mit {2} mm</translation>
     </message>
@@ -16385,6 +16861,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0}: sie gilt zur geplanten Zeit nicht</translation>
     </message>
     <message>
+        <source>{0}: it lies some {1} m away, but how far it reaches is not known: {2}; look it up</source>
+        <translation>{0}: sie liegt etwa {1} m entfernt, doch wie weit sie reicht, ist nicht bekannt: {2}; sehen Sie nach</translation>
+    </message>
+    <message>
         <source>{0}: it restricts nothing</source>
         <translation>{0}: sie beschränkt nichts</translation>
     </message>
@@ -16415,10 +16895,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0}: the path stays out of it, {1} m away</source>
         <translation>{0}: der Weg bleibt draußen, {1} m entfernt</translation>
-    </message>
-    <message>
-        <source>{0}: where it lies is not sure, so it is not clear: {1}; ask, and state the answer (--permit)</source>
-        <translation>{0}: wo sie liegt, ist nicht sicher, darum gilt sie nicht als frei: {1}; fragen und die Antwort angeben (--permit)</translation>
     </message>
     <message>
         <source>{0}: {1}</source>
@@ -17625,10 +18101,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Standort &apos;{0}&apos; hat noch keine Scheiben: in Fotos suchen (&apos;panels&apos; oder Reiter Fotos) oder auf das Gebäude zeichnen (Reiter Standort oder &apos;site import&apos; mit --panel-grid)</translation>
     </message>
     <message>
-        <source>there are no panels yet: find them in photos (Photos tab), or draw a panel grid on the building</source>
-        <translation>es gibt noch keine Scheiben: in Fotos suchen (Reiter Fotos) oder ein Scheibenraster auf das Gebäude zeichnen</translation>
-    </message>
-    <message>
         <source>expected {0} obstacle meshes, got {1}</source>
         <translation>erwartet wurden {0} Hindernisnetze, gefunden: {1}</translation>
     </message>
@@ -17783,10 +18255,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>there is no building &apos;{0}&apos;; there are {1}</source>
         <translation>es gibt kein Gebäude &apos;{0}&apos;; es gibt {1}</translation>
-    </message>
-    <message>
-        <source>the panel grid is on building &apos;{0}&apos;</source>
-        <translation>das Scheibenraster liegt auf Gebäude &apos;{0}&apos;</translation>
     </message>
     <message>
         <source>no building in the file has windows; &apos;{0}&apos; has the most surfaces</source>
@@ -22496,14 +22964,6 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Quader zeichnen: zwei Ecken am Boden, dann die Höhe</translation>
     </message>
     <message>
-        <source>Zero on map</source>
-        <translation>Nullpunkt auf Karte</translation>
-    </message>
-    <message>
-        <source>Click on the map where the site&apos;s zero lies</source>
-        <translation>Auf der Karte anklicken, wo der Nullpunkt des Standorts liegt</translation>
-    </message>
-    <message>
         <source>Airspace</source>
         <translation>Luftraum</translation>
     </message>
@@ -22540,10 +23000,6 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Anklicken, wo das Fluggerät bei der Rückkehr landen darf. Esc bricht ab.</translation>
     </message>
     <message>
-        <source>Click where the site&apos;s zero lies: all of the site moves there. Esc cancels.</source>
-        <translation>Anklicken, wo der Nullpunkt liegt: Der ganze Standort rückt dorthin. Esc bricht ab.</translation>
-    </message>
-    <message>
         <source>Set origin</source>
         <translation>Nullpunkt setzen</translation>
     </message>
@@ -22562,6 +23018,18 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Move home</source>
         <translation>Startplatz versetzen</translation>
+    </message>
+    <message>
+        <source>Site origin</source>
+        <translation>Nullpunkt</translation>
+    </message>
+    <message>
+        <source>Click on the map where the site origin lies</source>
+        <translation>Auf der Karte dorthin klicken, wo der Nullpunkt liegt</translation>
+    </message>
+    <message>
+        <source>Click where the site origin lies: all of the site moves there. Esc cancels.</source>
+        <translation>Dorthin klicken, wo der Nullpunkt liegt: Der ganze Standort rückt dorthin. Esc bricht ab.</translation>
     </message>
     <message>
         <source>Mark rally point</source>

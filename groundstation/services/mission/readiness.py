@@ -281,7 +281,7 @@ def _coverage(case: Case) -> Iterator[Finding]:
     seen, worth = (covered, bound, covered / bound), case.plan.present_worth
     if worth is None:
         text = say(
-            "{} of the {} sections that flights can cover are covered ({:.0%}): plan with more views, or more batteries",
+            "{} of the {} sections that flights can cover are covered ({:.0%}): plan more views, or more batteries",
             *seen,
         )
     else:
