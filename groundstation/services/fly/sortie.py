@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from groundstation.services.fly.flying import check_site
+from groundstation.services.mission.readiness import errors_of
 from groundstation.services.plan.effects import EffectChoice
 from groundstation.vehicle.orders import SortieOrders, sortie_orders
 from missions.mavlink.autopilots import Autopilot
@@ -16,10 +17,8 @@ from missions.simulator.conditions import Conditions
 from missions.simulator.scene import flight_scene
 from planning.base.effects import EffectSetting
 from planning.base.errors import MissionError
-from planning.base.findings import Severity
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
-from planning.checks import check_case
 from planning.checks.case import Case
 from planning.insight.flight_profile import LowFlight
 from planning.plan import Plan
@@ -79,7 +78,7 @@ def prepare_sortie(
     missions = missions_from_plan(plan, site_model.site.origin, site_model.site.home_enu_m)
     is_known = known is not None and known.plan is plan and known.site_model is site_model
     case = known if is_known and known is not None else Case.of(plan, site_model)
-    errors = [finding for finding in check_case(case, monitor) if finding.severity is Severity.ERROR]
+    errors = errors_of(case, monitor)
     if errors:
         first = errors[0].message
         raise MissionError(

@@ -196,6 +196,12 @@ def additional_findings(case: Case) -> tuple[Finding, ...]:
     return (*_coverage(case), *_place(case), *_items(case), *_glass(case))
 
 
+def errors_of(case: Case, monitor: Monitor = QUIET) -> tuple[Finding, ...]:
+    """Why a plan is not ready to fly, whatever the day; empty where nothing forbids it."""
+    found = (*check_case(case, monitor), *additional_findings(case))
+    return tuple(each for each in found if each.severity is Severity.ERROR)
+
+
 def _coverage(case: Case) -> Iterator[Finding]:
     covered = int(np.count_nonzero(case.measures.counts))
     bound = case.plan.coverage.reachable_upper_bound
