@@ -206,7 +206,7 @@ def readiness(plan: Plan, site_model: SiteModel) -> Iterator[Finding]:
         first, n_more = about(errors[0].place, errors[0].message), len(errors) - 1
         text = say("NOT ready to fly: {}", first)
         if n_more:
-            text = say("NOT ready to fly: {}; and {} more (`check` lists all)", first, n_more)
+            text = say("NOT ready to fly: {}; and {} more", first, n_more)
         yield Finding(Severity.WARNING, NOT_READY, text, "", float(len(errors)), 0.0, "findings")
 
 

@@ -152,6 +152,16 @@ def readiness_of(findings: Sequence[Finding]) -> Readiness:
     return Readiness.WITH_WARNINGS if has_warnings else Readiness.READY
 
 
+NOT_LOOKED_AT = {"zones": say("zones"), "sun": say("sun"), "cold": say("batteries' temperature")}
+"""What a note says is not known, by the note's code: checks that passed say nothing of it."""
+
+
+def not_looked_at(findings: Iterable[Finding]) -> tuple[Message, ...]:
+    """What could not be looked at, since nobody said the day, or which zones there are."""
+    codes = {finding.code for finding in findings if finding.severity is Severity.NOTE}
+    return tuple(name for code, name in NOT_LOOKED_AT.items() if code in codes)
+
+
 @dataclass(frozen=True, slots=True)
 class FlightDay:
     """What is known of the day of a flight.
