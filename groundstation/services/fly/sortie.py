@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
@@ -10,6 +10,7 @@ from groundstation.services.fly.flying import check_site
 from groundstation.services.mission.readiness import errors_of
 from groundstation.services.plan.effects import EffectChoice
 from groundstation.vehicle.orders import SortieOrders, sortie_orders
+from groundstation.vehicle.preflight import PreflightCheck, warnings_of
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.build import missions_from_plan
 from missions.simulator.build import decide_effects
@@ -106,6 +107,8 @@ class TakeOff:
         Part of a full battery that it uses.
     low
         How low it flies outside of the column above home; None where it does not leave it.
+    warnings
+        Of the list before take-off, which the pilot confirms by starting.
     """
 
     n_photos: int
@@ -117,9 +120,10 @@ class TakeOff:
     least_distance_m: float
     battery: float
     low: LowFlight | None
+    warnings: tuple[str, ...] = ()
 
 
-def take_off_of(sortie: LiveSortie, autopilot: Autopilot | None) -> TakeOff:
+def take_off_of(sortie: LiveSortie, autopilot: Autopilot | None, checks: Sequence[PreflightCheck] = ()) -> TakeOff:
     """What will happen when a sortie starts on this autopilot."""
     plan, orders = sortie.case.plan, sortie.orders
     flown = plan.sorties[orders.number - 1]
@@ -134,6 +138,7 @@ def take_off_of(sortie: LiveSortie, autopilot: Autopilot | None) -> TakeOff:
         least_distance_m=plan.constraints.min_distance_m,
         battery=orders.duration_s(autopilot) / plan.aircraft.endurance_s,
         low=orders.low,
+        warnings=tuple(check.text for check in warnings_of(checks)),
     )
 
 
