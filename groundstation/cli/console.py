@@ -15,7 +15,7 @@ from groundstation.services.jobs.runner import JobContext, JobEvent, JobProgress
 from groundstation.services.messages import LANGUAGES, localized, translation
 from groundstation.services.units import UnitSystem
 from planning.base.findings import Finding, Severity
-from planning.base.messages import Message, about, glue, say
+from planning.base.messages import Message, about, glue, joined, say
 from planning.base.progress import hear_compiling
 
 if TYPE_CHECKING:
@@ -186,17 +186,19 @@ def print_findings(findings: Iterable[Finding]) -> None:
 
 def verdict_text(findings: Iterable[Finding]) -> Message:
     """Whether a plan is ready to fly, in words."""
-    from groundstation.services.mission.readiness import Readiness, readiness_of
+    from groundstation.services.mission.readiness import Readiness, not_looked_at, readiness_of
 
     findings = tuple(findings)
     match readiness_of(findings):
         case Readiness.READY:
-            return say("ready to fly")
+            verdict = say("ready to fly")
         case Readiness.WITH_WARNINGS:
             n_warnings = sum(finding.severity is Severity.WARNING for finding in findings)
-            return say("ready to fly, but read {} above", counted(n_warnings, "warning"))
+            verdict = say("ready to fly, but read {} above", counted(n_warnings, "warning"))
         case Readiness.NOT_READY:
             return say("not ready to fly: see the errors above")
+    unknown = not_looked_at(findings)
+    return say("{}; not looked at: {}", verdict, joined(", ", unknown)) if unknown else verdict
 
 
 def flight_status(report: FlightReport) -> int:

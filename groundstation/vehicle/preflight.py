@@ -215,6 +215,11 @@ def remedies(check: PreflightCheck, on_board: OnBoard) -> tuple[Remedy, ...]:
     return tuple(ways)
 
 
+def warnings_of(checks: Iterable[PreflightCheck]) -> tuple[PreflightCheck, ...]:
+    """What the pilot has to know, and confirms by starting."""
+    return tuple(check for check in checks if check.verdict is Verdict.WARN)
+
+
 def is_ready(checks: tuple[PreflightCheck, ...]) -> bool:
     """Whether nothing is missing."""
     return all(check.verdict in (Verdict.OK, Verdict.WARN) for check in checks)
@@ -248,6 +253,9 @@ def _position(state: VehicleState, now_s: float) -> PreflightCheck:
         return PreflightCheck("position", Verdict.WAIT, say("the autopilot has {}", state.estimator.value.problem))
     if state.motion is None or state.motion.age_s(now_s) > STALE_S:
         return PreflightCheck("position", Verdict.WAIT, say("the autopilot sends no position"))
+    if state.estimator is None:
+        text = say("the autopilot says where it is, but not how sure of it: compare it with the map")
+        return PreflightCheck("position", Verdict.WARN, text)
     return PreflightCheck("position", Verdict.OK, say("the autopilot knows where it is"))
 
 
@@ -349,6 +357,9 @@ def _home_height(state: VehicleState, orders: SortieOrders) -> PreflightCheck:
         if above_m >= 0.0
         else say("{:.1f} m below the planned home{}", abs(above_m), accuracy)
     )
+    if accuracy_m is not None and accuracy_m > HOME_HEIGHT_M:
+        text = say("{}, which is less sure than the {:g} m allowed: look whether it stands there", text, HOME_HEIGHT_M)
+        return PreflightCheck("home-height", Verdict.WARN, text, above_m, HOME_HEIGHT_M, "m")
     return PreflightCheck("home-height", Verdict.OK, text, above_m, HOME_HEIGHT_M, "m")
 
 
@@ -401,9 +412,11 @@ def _sensors(state: VehicleState) -> Iterator[PreflightCheck]:
             reason = say("remote ID: {}", refusal_text(reason))
         yield PreflightCheck("sensors", Verdict.WAIT, say("the autopilot cannot be armed yet ({})", reason))
     elif problems:
-        yield PreflightCheck(
-            "sensors", Verdict.OK, say("it can be armed, but has trouble with: ") + joined(", ", problems)
+        text = say(
+            "it can be armed, but has trouble with: {}; find out why, or start only where the flight does without",
+            joined(", ", problems),
         )
+        yield PreflightCheck("sensors", Verdict.WARN, text)
     else:
         yield PreflightCheck("sensors", Verdict.OK, say("healthy"))
 
@@ -426,7 +439,12 @@ def _wind(state: VehicleState, orders: SortieOrders) -> PreflightCheck:
     limit_m_s = orders.mission.aircraft.max_wind_m_s
     if state.wind_enu_m_s is None:
         # Multirotors without an airspeed sensor know the wind only in flight.
-        return PreflightCheck("wind", Verdict.OK, say("not measured on the ground; look up"), None, limit_m_s, "m/s")
+        text = say(
+            "not measured on the ground: look up, or measure it; {} flies in up to {:g} m/s",
+            orders.mission.aircraft.name,
+            limit_m_s,
+        )
+        return PreflightCheck("wind", Verdict.WARN, text, None, limit_m_s, "m/s")
     wind_m_s = math.hypot(*state.wind_enu_m_s.value[:2])
     if wind_m_s > limit_m_s:
         name = orders.mission.aircraft.name

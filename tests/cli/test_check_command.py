@@ -11,7 +11,10 @@ def test_a_good_plan_is_ready_to_fly_and_the_next_command_is_told(reflight, pane
     done = reflight("check", pane / "plan.json", pane / "site.json")
     assert done.status == 0
     # Six views are far from all that could be covered of the pane, and that is said, too.
-    assert done.out.splitlines()[-1] == "ready to fly, but read 1 warning above"
+    unknown = "zones, sun, batteries' temperature"
+    assert done.out.splitlines()[-1] == f"ready to fly, but read 1 warning above; not looked at: {unknown}"
+    dated = reflight("check", pane / "plan.json", pane / "site.json", "--at", "2026-06-21T10:30", "--temperature", 20)
+    assert dated.out.splitlines()[-1].endswith("; not looked at: zones")
     assert "warning  coverage-far: " in done.out
     assert "smallest distance at a viewpoint" in done.out
     assert done.err.startswith("next: app.py export ")

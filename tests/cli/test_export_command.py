@@ -243,6 +243,9 @@ def test_a_plan_that_breaks_a_rule_is_exported_with_a_warning(reflight, pane, tm
     (finding,) = (finding for finding in done.json["findings"] if finding["code"] == "not-ready")
     assert finding["severity"] == "warning"
     assert "duration with the battery reserve kept" in finding["message"]
+    done = reflight("export", plan, "--site", pane / "site.json", "--format", "kml", "-o", tmp_path / "m.kml")
+    assert done.status == 0
+    assert "warning: NOT ready to fly: sortie 1: duration with the battery reserve kept" in done.err
 
 
 def test_a_plan_without_sorties_is_refused(reflight, pane, changed, tmp_path):

@@ -51,6 +51,18 @@ def test_zones_are_added_listed_checked_and_permitted(reflight, place):
     refused = reflight("plan", site, "-o", place / "b.plan.json", "--views", 2, "--at", EVENING)
     assert refused.status == 1
     assert "geo-zone 'School' (flights prohibited)" in refused.err
+    card = place / "CARD"
+    card.mkdir()
+    not_sent = reflight("send", plan, "--site", site, "--to", card).error
+    assert "not sent. NOT ready to fly: " in not_sent
+    assert "School: flights prohibited" in not_sent
+    assert not list(card.iterdir())
+    sent = reflight("send", plan, "--site", site, "--to", card, "--despite-errors")
+    assert sent.status == 0
+    assert "warning: NOT ready to fly: " in sent.err
+    assert len(list(card.iterdir())) == 1
+    exported = reflight("export", plan, "--site", site, "--format", "kml", "-o", place / "plan.kml")
+    assert "warning: NOT ready to fly: " in exported.err
     assert reflight("site", "zones", site, "--permit", "Z1=4711").status == 0
     assert codes(reflight("check", plan, site, "--at", EVENING, "--json"))["zone"] == "note"
     assert json.loads(site.read_text())["zones"][0]["permitted"] == {"Z1": "4711"}

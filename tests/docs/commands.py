@@ -39,7 +39,7 @@ def _section(name: str, parser: argparse.ArgumentParser, level: str) -> str:
     usage = " ".join(parser.format_usage().removeprefix("usage: ").split())
     usage = usage.replace(parser.prog, f"reflight {name}", 1)
     lines = [f"{level} {name}\n", _sentence(parser.description or "") + "\n"]
-    if not any(_children(parser)):
+    if not any(_children(parser)) or parser.get_default("run") is not None:  # some do something without an action, too
         lines.append(f"```text\n{_wrapped(usage)}\n```\n")
         lines.append(_options(parser, ""))
     if parser.epilog:

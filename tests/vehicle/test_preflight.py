@@ -49,6 +49,7 @@ def ready_state(orders):
         battery=Timed(BatteryLevel(0.98), NOW_S),
         estimator=Timed(EstimatorHealth(), NOW_S),
         sensor_problems=Timed((), NOW_S),
+        wind_enu_m_s=Timed((1.0, 0.0, 0.0), NOW_S),
     )
 
 
@@ -69,7 +70,7 @@ def test_an_aircraft_beside_a_home_on_the_border_of_the_airspace_is_ready(orders
 
 def test_before_the_first_heartbeat_everything_is_waited_for(orders):
     found = {check.code: check.verdict for check in checks(VehicleState(), orders, OnBoard())}
-    assert found.pop("wind") is Verdict.OK
+    assert found.pop("wind") is Verdict.WARN, "nobody knows it"
     assert found.pop("low-flight") is Verdict.OK, "the plan alone says it"
     assert set(found.values()) == {Verdict.WAIT}
 
@@ -99,6 +100,11 @@ def far(metres):
         ("battery", Verdict.WAIT, lambda s, o: replace(s, battery=Timed(BatteryLevel(None), NOW_S))),
         ("sensors", Verdict.WAIT, lambda s, o: replace(s, sensor_problems=Timed(("pre-arm checks",), NOW_S))),
         ("wind", Verdict.BAD, lambda s, o: replace(s, wind_enu_m_s=Timed((30.0, 0.0, 0.0), NOW_S))),
+        # What is in trouble, or not known, may be flown, but is never well.
+        ("wind", Verdict.WARN, lambda s, o: replace(s, wind_enu_m_s=None)),
+        ("sensors", Verdict.WARN, lambda s, o: replace(s, sensor_problems=Timed(("magnetometer",), NOW_S))),
+        ("position", Verdict.WARN, lambda s, o: replace(s, estimator=None)),
+        ("home-height", Verdict.WARN, lambda s, o: replace(s, fix=Timed(GnssFix(3, 20, 1.2, 3.5), NOW_S))),
     ],
 )
 def test_each_thing_that_is_missing_is_found_and_only_that(orders, code, verdict, change):
@@ -133,7 +139,7 @@ def test_the_orders_of_a_sortie_know_how_low_it_flies(orders):
 
 
 def test_rtk_is_asked_for_only_where_it_is_needed(orders):
-    state = replace(ready_state(orders), fix=Timed(GnssFix(3, 20, 1.5, 2.0), NOW_S))
+    state = replace(ready_state(orders), fix=Timed(GnssFix(3, 20, 1.5, 0.9), NOW_S))
     assert is_ready(checks(state, orders))
     (check,) = [check for check in checks(state, orders, needs_rtk=True) if check.verdict is not Verdict.OK]
     assert "RTK float is needed" in check.text

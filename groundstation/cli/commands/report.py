@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -110,3 +111,6 @@ def _print_text(reported: ReportedFlight, options: argparse.Namespace) -> None:
     print_findings(reported.findings)
     if options.out is not None and flight.report.summary.covered < flight.report.summary.covered_planned:
         print_next("topup", options.out, options.plan, options.site, "-o", options.out.with_name("topup.plan.json"))
+    if options.photos is not None:
+        tell("to enter this flight in the log book, with the times of its photos:", file=sys.stderr)
+        print_next("logbook", "add", options.plan, "--site", options.site, "--photos", options.photos)

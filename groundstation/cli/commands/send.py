@@ -52,6 +52,7 @@ def add_parser(subparsers: Any) -> None:
     add("--route", action="append", default=[], metavar="ID", help="dji-fly: route to replace; once for each sortie")
     add("--name", metavar="NAME", help="of the mission there (default: that of the file)")
     add("--replace", action="store_true", help="replace another mission of the same name")
+    add("--despite-errors", action="store_true", help="send a plan that is NOT ready to fly, at the pilot's own risk")
     add("--backup", type=Path, metavar="DIR", help="for copies of what is replaced (default: the user's data folder)")
     add("--site", type=Path, metavar="SITE", help="site file (default: the one beside the plan it was made for)")
     place = parser.add_argument_group(GROUP)
@@ -137,7 +138,9 @@ def _send(options: argparse.Namespace) -> int:
     payload = payload_of_files(options.missions, options.site, export_options)
     if options.name is not None:
         payload = replace(payload, name=options.name)
-    targets, findings = targets_of(payload, storage, options.route, may_replace=options.replace)
+    targets, findings = targets_of(
+        payload, storage, options.route, may_replace=options.replace, despite_errors=options.despite_errors
+    )
     backups = options.backup or data_folder() / "replaced"
     sent = run_job("send", lambda context: send(payload, storage, targets, backups, context))
     if options.json:

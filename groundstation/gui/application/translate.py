@@ -224,6 +224,10 @@ IN_WINDOW = {
 
 
 OPTION_FIELDS = {
+    "--despite-errors": (
+        "SendDialog",
+        QT_TRANSLATE_NOOP("SendDialog", "Send it all the same: it may crash, or break the law"),
+    ),
     "--population-counts": ("Parameters", QT_TRANSLATE_NOOP("Parameters", "Raster counts people")),
     "--reserve": ("Parameters", QT_TRANSLATE_NOOP("Parameters", "Battery reserve")),
     "--airspace-margin": ("ImportForm", QT_TRANSLATE_NOOP("ImportForm", "Airspace around the building")),

@@ -567,7 +567,8 @@ class FlyPage(GradualTab):
         if active is None:
             return False
         autopilot = None if active.view is None else active.view.state.autopilot
-        take_off = take_off_of(active.sortie, autopilot)
+        checks = () if active.view is None else active.view.checks
+        take_off = take_off_of(active.sortie, autopilot, checks)
         wait_s = self.controller.wait_s(self.controller.selected)
         return self.questions.start(self._shared_view.window(), take_off, self._context.units, wait_s)
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QWidget
 
+from groundstation.gui.application.translate import translated
 from groundstation.gui.widgets.questions import agrees, ask_text
 from groundstation.services.fly.sortie import TakeOff
 from groundstation.services.mission.readiness import TooLong, duration_text
@@ -27,7 +28,7 @@ class FlightQuestions(QObject):
             when = minutes_text(wait_s) if math.isfinite(wait_s) else self.tr("until the others have landed")
             early = self.tr("TOO EARLY: now it may come too near to an aircraft in the air. Wait {0}.").format(when)
             text = f"{early}\n\n{text}"
-        return agrees(parent, self.tr("Start the flight"), text, warns=wait_s > 0.0)
+        return agrees(parent, self.tr("Start the flight"), text, warns=wait_s > 0.0 or bool(take_off.warnings))
 
     def start_text(self, take_off: TakeOff, units: UnitSystem) -> str:
         """What will happen."""
@@ -44,9 +45,17 @@ class FlightQuestions(QObject):
             ),
             *([] if take_off.low is None else [self._low_text(take_off.low, units)]),
             self._battery_text(take_off),
+            *self._warnings(take_off, units),
             self.tr("Is everybody clear of the aircraft?"),
         ]
         return "\n\n".join(lines)
+
+    def _warnings(self, take_off: TakeOff, units: UnitSystem) -> list[str]:
+        """What the list before take-off warns of: it is read once more where it is agreed to."""
+        if not take_off.warnings:
+            return []
+        told = "\n".join(f"\u2022 {translated(text, units)}" for text in take_off.warnings)
+        return [self.tr("The list before take-off warns; by starting you confirm:\n{0}").format(told)]
 
     def _battery_text(self, take_off: TakeOff) -> str:
         text = self.tr("It uses about {0:.0%} of a full battery.").format(take_off.battery)

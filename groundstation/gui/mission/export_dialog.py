@@ -26,6 +26,7 @@ from groundstation.services.jobs.runner import JobContext
 from groundstation.services.mission.files import (
     PreparedExport,
     export_paths,
+    not_ready,
     prepare_export,
     write_proved_export,
 )
@@ -311,6 +312,12 @@ class ExportDialog(AnsweringDialog):
             self._say("error", self.tr("Cannot be exported: {0}").format(prepared.refusal))
         elif not prepared.can_be_written:
             self._say("error", self.tr("Not to be written like this: see the errors."))
+        elif not prepared.is_ready_to_fly:
+            text = self.tr(
+                "NOT ready to fly: see the finding. Files that can be written all the same, to look at: {0}. Do not "
+                "fly them before the plan is corrected."
+            )
+            self._say("error", text.format(prepared.n_files))
         elif any(found.severity is Severity.WARNING for found in prepared.findings):
             self._say(
                 "warning", self.tr("Ready to be written, files: {0}. Read the warnings.").format(prepared.n_files)
@@ -395,6 +402,11 @@ class SendDialog(AnsweringDialog):
         self._folder = QPushButton(self.tr("Folder ..."))
         self._folder.setToolTip(self.tr("Send into a folder that you choose"))
         self._options = ExportForm(self._context.units, only=FileFormat.DJI_KMZ)
+        self._despite = QCheckBox(self.tr("Send it all the same: it may crash, or break the law"))
+        self._despite.setToolTip(
+            self.tr("The aircraft flies what it is sent: into things, or where flights are forbidden")
+        )
+        self._despite.hide()
 
     def _lay_out(self) -> None:
         left = QWidget()
@@ -415,6 +427,7 @@ class SendDialog(AnsweringDialog):
         left_layout.addStretch(1)
         right, columns = QVBoxLayout(), QHBoxLayout()
         right.addWidget(self._state)
+        right.addWidget(self._despite)
         right.addWidget(self._findings, 1)
         columns.addWidget(left)
         columns.addLayout(right, 1)
@@ -430,6 +443,7 @@ class SendDialog(AnsweringDialog):
         self._options.valueChanged.connect(self._prepare)
         self._again.clicked.connect(self.look)
         self._folder.clicked.connect(self._choose_folder)
+        self._despite.toggled.connect(self._risk_taken)
         self._action.clicked.connect(self._ask_and_send)
 
     # What there is
@@ -563,7 +577,9 @@ class SendDialog(AnsweringDialog):
         self._context.start(self.tr("Look for devices"), work, done, self._failed)
 
     def _forget(self) -> int:
+        """What is asked anew may be another mission: the risk of it is to be taken anew."""
         self._prepared = None
+        self._show_risk(False)
         return super()._forget()
 
     def _refuse(self, reason: str) -> None:
@@ -603,11 +619,27 @@ class SendDialog(AnsweringDialog):
         n = len(prepared.targets)
         self._findings.set_findings(prepared.findings)
         self._findings.set_placeholder(self.tr("No objections to these files."))
-        self._action.setEnabled(True)
-        if any(found.severity is Severity.WARNING for found in prepared.findings):
+        self._action.setEnabled(prepared.is_ready_to_fly)
+        self._show_risk(not prepared.is_ready_to_fly)
+        if not prepared.is_ready_to_fly:
+            text = self.tr(
+                "NOT ready to fly, and not sent as it stands: see the finding, and correct the plan. The aircraft "
+                "flies what it is sent, into things or where flights are forbidden."
+            )
+            self._say("error", text)
+        elif any(found.severity is Severity.WARNING for found in prepared.findings):
             self._say("warning", self.tr("Ready to be sent, files: {0}. Read the warnings.").format(n))
         else:
             self._say("ok", self.tr("Ready to be sent, files: {0}").format(n))
+
+    def _show_risk(self, is_shown: bool) -> None:
+        """The box that takes the risk is shown without its tick, each time."""
+        self._despite.setChecked(False)
+        self._despite.setVisible(is_shown)
+
+    def _risk_taken(self, is_taken: bool) -> None:
+        if self._prepared is not None:
+            self._action.setEnabled(is_taken or self._prepared.is_ready_to_fly)
 
     # Sending
 
@@ -627,11 +659,19 @@ class SendDialog(AnsweringDialog):
 
         self._is_writing = True
         self._action.setEnabled(False)
+        self._show_risk(False)
         self._say("heading", self.tr("Writing and reading back ..."))
-        self._context.start(self.tr("Send to controller"), work, self._when_sent, self._failed)
+        self._context.start(
+            self.tr("Send to controller"), work, lambda files: self._when_sent(files, payload), self._failed
+        )
 
-    def _when_sent(self, files: tuple[SentFile, ...]) -> None:
+    def _when_sent(self, files: tuple[SentFile, ...], payload: Payload) -> None:
         self._is_writing = False
+        against = not_ready(payload.findings)
+        if against is not None:
+            self._context.say(
+                Severity.WARNING, self.tr("Sent all the same. {0}").format(self._context.localized(against.message))
+            )
         text = self.tr("Sent, read back and equal to the plan: {0}. Eject the device before you pull it out.")
         self._context.say(Severity.OK, text.format(", ".join(str(each.path) for each in files)))
         for each in files:
@@ -642,4 +682,5 @@ class SendDialog(AnsweringDialog):
 
     def _failed(self, error: BaseException) -> None:
         self._action.setEnabled(False)
+        self._show_risk(False)
         self._say_failed(self.tr("Not sent: {0}").format(self._context.localized(str(error))))

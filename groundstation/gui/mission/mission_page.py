@@ -23,7 +23,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.application.context import ApplicationContext
-from groundstation.gui.application.translate import translated_finding
+from groundstation.gui.application.translate import translated, translated_finding
 from groundstation.gui.map.map_view import MapView
 from groundstation.gui.mission.export_dialog import ExportDialog, SendDialog
 from groundstation.gui.mission.mission_controller import MissionController, Proved
@@ -42,6 +42,7 @@ from groundstation.services.mission.readiness import (
     Readiness,
     counts_by_severity,
     duration_text,
+    not_looked_at,
     readiness_of,
 )
 from groundstation.services.plan.places import item_of_place
@@ -115,7 +116,11 @@ class FindingsView(QWidget):
         self._is_stale = False
         self._say_state("" if findings is not None else self.tr("Not checked yet."))
         self._list.set_findings(self._findings or ())
-        kept = self.tr("All checks passed. The button with the tick lists them.")
+        kept, unknown = self.tr("All checks passed. The button with the tick lists them."), self._not_looked_at()
+        if unknown:
+            kept = self.tr("All checks passed; not looked at: {0}. The button with the tick lists them.").format(
+                unknown
+            )
         self._list.set_placeholder(kept if self._findings else "")
         self._show_counts()
 
@@ -203,10 +208,17 @@ class FindingsView(QWidget):
                 Readiness.WITH_WARNINGS: (self.tr("Ready to fly, but read the warnings"), Severity.WARNING, "warning"),
                 Readiness.NOT_READY: (self.tr("NOT ready to fly"), Severity.ERROR, "error"),
             }[readiness_of(self._findings)]
+            unknown = self._not_looked_at()
+            if unknown and severity is not Severity.ERROR:
+                text = self.tr("{0}; not looked at: {1}").format(text, unknown)
         self._verdict.setText(text)
         self._verdict.setProperty("role", role)
         self._verdict.style().polish(self._verdict)
         self._verdict_icon.setPixmap(severity_icon(severity, colours()).pixmap(SIZE_PX, SIZE_PX))
+
+    def _not_looked_at(self) -> str:
+        """What the check could not look at, in the window's language; empty for nothing."""
+        return ", ".join(translated(text, UnitSystem.METRIC) for text in not_looked_at(self._findings or ()))
 
     def _say_state(self, text: str) -> None:
         self._state.setText(text)
@@ -569,7 +581,11 @@ class MissionPage(QObject):
             self.findings.set_findings(found.findings)
             self.lists.set_panels_covered(found.panels_covered)
             counts = counts_by_severity(found.findings)
-            self._context.note(n_errors=counts[Severity.ERROR], n_warnings=counts[Severity.WARNING])
+            self._context.note(
+                n_errors=counts[Severity.ERROR],
+                n_warnings=counts[Severity.WARNING],
+                not_looked_at=not_looked_at(found.findings),
+            )
         elif self._is_shown:
             self._check_soon.start()
         self._show_freshness()

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
 from groundstation.gui.application.context import ApplicationContext
+from groundstation.services.fly.log_book import StatedSortie, flight_of_photos
 from groundstation.services.jobs.runner import JobContext
 from groundstation.services.photos.coarse import (
     SPARSE,
@@ -46,10 +47,10 @@ from groundstation.services.site.sources import with_new_site
 from planning.base.errors import GroundStationError
 from planning.base.findings import Finding, Severity
 from planning.plan import Plan
-from planning.site.records import Facade, SiteModel
+from planning.site.records import Facade, Site, SiteModel
 from reconstruction.coarse.parameters import CoarseRequest
 from reconstruction.panels.solving.facades_file import found_facades
-from reconstruction.scenes.runs.run_record import BegunPhotos, begun_photos
+from reconstruction.scenes.runs.run_record import BegunPhotos, begun_photos, is_rendered
 
 if TYPE_CHECKING:
     from groundstation.services.scenes.photos import RenderedScene
@@ -67,6 +68,16 @@ _Basis = tuple[tuple[Facade, ...], Plan | None]
 """What coverage is counted over: the panels, and the plan that was flown."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class FlightOfPhotos:
+    """What photos say of a flight of a plan: when its sorties were flown, and what the report finds."""
+
+    plan: Plan
+    site: Site
+    sorties: tuple[StatedSortie, ...]
+    findings: tuple[Finding, ...]
+
+
 class PhotosController(QObject):
     """Reads photos, searches them and keeps the history of corrections.
 
@@ -82,6 +93,8 @@ class PhotosController(QObject):
         Another way of searching was measured.
     stateChanged()
         What can be done is different.
+    flightStated(FlightOfPhotos)
+        It is known what the photos say of their flight.
     """
 
     photosChanged = Signal()  # noqa: N815  (Qt's own way of naming)
@@ -89,6 +102,7 @@ class PhotosController(QObject):
     draftChanged = Signal()  # noqa: N815
     trialsChanged = Signal()  # noqa: N815
     stateChanged = Signal()  # noqa: N815
+    flightStated = Signal(object)  # noqa: N815
 
     def __init__(self, context: ApplicationContext, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -154,6 +168,28 @@ class PhotosController(QObject):
         if self.folder is not None:
             return self.folder
         return None if project is None else project / PHOTOS_FOLDER
+
+    @property
+    def may_state_flight(self) -> bool:
+        """Whether the photos are of a real flight, and may be of the active plan."""
+        document = self._context.document
+        if self.intake is None or not self.intake.photos or document.current is None or document.site is None:
+            return False
+        folder = self.intake.folder
+        return document.site.site.n_panels > 0 and not any(is_rendered(each) for each in (folder, folder.parent))
+
+    def state_flight(self) -> None:
+        """Find out what the photos say of the flight of the active plan, so that it can be entered."""
+        document, intake = self._context.document, self.intake
+        if intake is None or document.current is None or document.site is None or not self.may_state_flight:
+            return
+        plan, model = document.current.plan, document.site
+
+        def work(context: JobContext) -> FlightOfPhotos:
+            found = flight_of_photos(plan, model, intake.metadata, str(intake.folder), context)
+            return FlightOfPhotos(plan, model.site, *found)
+
+        self._start(self.tr("Log book"), work, self.flightStated.emit)
 
     def make_coarse(self, photos: Path, out: Path, distances: tuple[tuple[str, str, float], ...] = ()) -> None:
         """Make a site of a folder of photos alone, open it, and read the photos over it.
@@ -420,6 +456,11 @@ class PhotosController(QObject):
 
     def _taken_in(self, intake: PhotoIntake, basis: _Basis) -> None:
         self.intake, self.cards, self._history, self.trials = intake, photo_cards(intake), None, ()
+        if self.may_state_flight:
+            self._context.say(
+                Severity.NOTE,
+                self.tr("Was this a flight of the active plan by card? “Enter in log book” takes its times from here."),
+            )
         self._counted = self._counting = basis
         self._coverage = None
         self.trialsChanged.emit()

@@ -31,10 +31,11 @@ from groundstation.gui.application.context import ApplicationContext
 from groundstation.gui.charts.quality_chart import TrialChart
 from groundstation.gui.map.place_map import PlaceMap
 from groundstation.gui.photos.coverage_display import CoverageDisplay, PanelSightings
+from groundstation.gui.photos.flight_entry import EnterFlightDialog
 from groundstation.gui.photos.grid_view import Tool, ToolBox
 from groundstation.gui.photos.photo_pane import PhotoPane, ThumbnailStrip
 from groundstation.gui.photos.photo_store import PhotoStore
-from groundstation.gui.photos.photos_controller import PhotosController
+from groundstation.gui.photos.photos_controller import FlightOfPhotos, PhotosController
 from groundstation.gui.shared_view import SharedView
 from groundstation.gui.widgets.findings_list import FindingsList
 from groundstation.gui.widgets.inputs import ChoiceBox, Form, LengthBox
@@ -308,6 +309,7 @@ class PhotosPage(QObject):
         self.find, self.use = QPushButton(self.tr("Find panels")), QPushButton(self.tr("Use these panels"))
         self.data_set = QPushButton(self.tr("Make data set ..."))
         self.next_battery = QPushButton(self.tr("Plan the next battery"))
+        self.log_book = QPushButton(self.tr("Enter in log book ..."))
         self.render, self.width = QPushButton(self.tr("Render these photos ...")), ChoiceBox()
         self.folder, self.coverage, self.state = QLabel(), QLabel(), QLabel()
         self.coverage_shown = CoverageDisplay(context, self.controller, self.pane.scene, self.sightings, self)
@@ -426,7 +428,11 @@ class PhotosPage(QObject):
         self.next_battery.setToolTip(
             self.tr("Looks at what the panes mirror in these photos, and plans the flight that adds most to them")
         )
-        for widget in (self.table, self.tools, self.state, self.use, self.data_set, self.next_battery):
+        self.log_book.setToolTip(
+            self.tr("For a flight of the active plan that was not watched here: the times are those of its photos")
+        )
+        shown = self.table, self.tools, self.state, self.use, self.data_set, self.next_battery, self.log_book
+        for widget in shown:
             layout.addWidget(widget, int(widget is self.table))
         self.details = QTabWidget()
         self.details.addTab(scrolled(detail), self.tr("Panels"))
@@ -447,6 +453,8 @@ class PhotosPage(QObject):
         self.use.clicked.connect(self._use)
         self.data_set.clicked.connect(self._make_data_set)
         self.next_battery.clicked.connect(controller.plan_next_battery)
+        self.log_book.clicked.connect(controller.state_flight)
+        controller.flightStated.connect(self._enter_flight)
         self.strip.chosen.connect(self._show_photo)
         self.map.chosen.connect(self.strip.choose)
         self.findings.placePicked.connect(self._go_to_place)
@@ -558,6 +566,14 @@ class PhotosPage(QObject):
         folder = self.questions.new_folder(self._shared_view.window(), title, proposed)
         if folder is not None:
             self.controller.make_data_set(folder)
+
+    def _enter_flight(self, flight: FlightOfPhotos) -> None:
+        """Offer to enter a flight in the log book."""
+        stated, findings = flight.sorties, flight.findings
+        dialog = EnterFlightDialog(
+            self._context, flight.plan, flight.site, stated, findings, self._shared_view.window()
+        )
+        dialog.open()
 
     def _measure(self) -> None:
         place = self.pane.place()
@@ -671,6 +687,7 @@ class PhotosPage(QObject):
         document = self._context.document
         can_plan = document.current is not None and document.site is not None and document.site.site.n_panels > 0
         self.next_battery.setEnabled(self.find.isEnabled() and can_plan)
+        self.log_book.setEnabled(controller.may_state_flight and not controller.is_busy)
         self.use.setEnabled(draft is not None and not draft.unsolved)
         self.state.setText(self._where_it_stands())
         self.coverage.setText(self.coverage_shown.words())

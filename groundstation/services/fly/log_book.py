@@ -1,7 +1,8 @@
 """The log book: every flight with aircraft, battery, times, place and what was found, and the cycles of batteries.
 
-One file for all flights of this user, and one in each project for its own. A flight is entered when it ends, also one
-that ended badly. Simulated flights are entered as such, and count for no battery.
+One file for all flights of this user, and one in each project for its own. A flight over a link is entered when it
+ends, also one that ended badly. Others, such as those of missions that were sent by card, the pilot enters, with the
+times of their photos where there are some. Simulated flights are entered as such, and count for no battery.
 """
 
 from __future__ import annotations
@@ -10,7 +11,8 @@ import csv
 import io
 import time
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from datetime import UTC, timedelta, timezone
 from pathlib import Path
 from typing import Any
 
@@ -18,15 +20,22 @@ import numpy as np
 
 from groundstation.services.fly.events import FlightEnded
 from groundstation.services.settings import data_folder
+from missions.flight.photo_folder import INFRARED, SORTIE_GAP_S, photo_flights
 from missions.flight.record import FlightRecord
+from missions.flight.report import report_flight
 from missions.mission.model import GeoPoint
 from planning.base.errors import InputError
 from planning.base.files import MIB, FileLimit, make_folder
-from planning.base.findings import Severity
+from planning.base.findings import Finding, Severity
 from planning.base.json_file import encoded, expect_format, read_json, to_record, write_atomically
 from planning.base.messages import plain, say
+from planning.base.progress import QUIET, Monitor
+from planning.geo.enu import geodetic_from_enu
+from planning.insight.sun_times import PAUSE_S
+from planning.photos.places import absolute_height_m, photo_places, photos_near
+from planning.photos.record import PhotoMetadata
 from planning.plan import Plan
-from planning.site.records import Site
+from planning.site.records import Site, SiteModel
 
 FORMAT = "reflight-log-book/1"
 FILE = "log-book.json"
@@ -64,6 +73,8 @@ class BookEntry:
         Public part of the operator's number.
     file
         Flight file.
+    remarks
+        The pilot's.
     """
 
     started_unix_s: float
@@ -84,6 +95,7 @@ class BookEntry:
     operator: str = ""
     is_simulated: bool = False
     file: str = ""
+    remarks: str = ""
 
     @property
     def duration_s(self) -> float:
@@ -116,8 +128,6 @@ def entry_of(
     if duration_s is None:
         duration_s = float(record.track.time_s[-1] - record.track.time_s[0])
     own = None if report is None else next((each for each in report.sorties if each.sortie == ended.sortie), None)
-    found = () if report is None else report.findings
-    worst = [each.message for each in found if each.severity in (Severity.ERROR, Severity.WARNING)]
     return BookEntry(
         started_unix_s=round(now_unix_s - duration_s, 1),
         ended_unix_s=round(now_unix_s, 1),
@@ -133,11 +143,16 @@ def entry_of(
         n_planned=len(plan.sorties[ended.sortie - 1].viewpoint_ids),
         least_distance_m=None if own is None else own.least_distance_m,
         ended="" if ended.error is None else plain(str(ended.error)),
-        findings=tuple(plain(text) for text in worst[:MAX_FINDINGS]),
+        findings=_worst(() if report is None else report.findings),
         operator=operator,
         is_simulated=is_simulated,
         file="" if ended.path is None else str(ended.path),
     )
+
+
+def _worst(findings: Iterable[Finding]) -> tuple[str, ...]:
+    worst = [each.message for each in findings if each.severity in (Severity.ERROR, Severity.WARNING)]
+    return tuple(plain(text) for text in worst[:MAX_FINDINGS])
 
 
 def _charge_used(record: FlightRecord) -> float | None:
@@ -166,6 +181,177 @@ def read_book(path: Path) -> tuple[BookEntry, ...]:
     return tuple(sorted(to_record(content, _Book, path).flights, key=lambda each: each.started_unix_s))
 
 
+# Flights that this program did not watch.
+
+STATED = say("stated by the pilot")
+"""Who says so, in the place of autopilot and link."""
+
+
+@dataclass(frozen=True, slots=True)
+class StatedSortie:
+    """A sortie of a plan as the pilot states it.
+
+    Parameters
+    ----------
+    number
+        In the plan, from 1.
+    started_unix_s, duration_s
+        Of the take-off, seconds since 1970 UTC, and until the landing.
+    """
+
+    number: int
+    started_unix_s: float
+    duration_s: float
+    battery: str = ""
+    n_photos: int = 0
+
+
+def sorties_as_planned(plan: Plan, started_unix_s: float, only: Sequence[int] = ()) -> tuple[StatedSortie, ...]:
+    """Sorties of a plan from a take-off on, as long as planned, with the usual pause between them; all, or `only`."""
+    stated, start_s = [], started_unix_s
+    for number, sortie in enumerate(plan.sorties, 1):
+        if only and number not in only:
+            continue
+        stated.append(StatedSortie(number, start_s, sortie.duration_s, "", len(sortie.viewpoint_ids)))
+        start_s += sortie.duration_s + PAUSE_S
+    return tuple(stated)
+
+
+def flight_of_photos(
+    plan: Plan, site_model: SiteModel, photos: Sequence[PhotoMetadata], label: str, monitor: Monitor = QUIET
+) -> tuple[tuple[StatedSortie, ...], tuple[Finding, ...]]:
+    """What the photos of a flight say of its sorties, and the findings of the report on it.
+
+    Photos belong to the sortie whose view was planned nearest to most of their group, groups being parted by
+    `SORTIE_GAP_S`. A sortie is taken to be at least as long as planned, its photos in its middle. Times are the
+    camera's; without its time zone in that of this computer.
+
+    Raises
+    ------
+    InputError
+        No photo says where and when it was taken, or they belong to another site.
+    """
+    found = photo_flights(photos, site_model.site, label)
+    report = report_flight(plan, site_model, found.records, monitor=monitor)
+    near, _ = photos_near([photo for photo in photos if _is_known(photo)], site_model.site, label)
+    return _sorties_of_photos(plan, site_model.site, near, label), report.findings
+
+
+def _is_known(photo: PhotoMetadata) -> bool:
+    return (
+        photo.image_source != INFRARED
+        and photo.lat_deg is not None
+        and (photo.taken_at is not None or photo.exposed_at is not None)
+        and (absolute_height_m(photo) is not None or photo.height_above_takeoff_m is not None)
+    )
+
+
+def _sorties_of_photos(plan: Plan, site: Site, photos: Sequence[PhotoMetadata], label: str) -> tuple[StatedSortie, ...]:
+    if not photos or not plan.viewpoints:
+        return ()
+    known = sorted(photos, key=_unix_s)
+    times_s = np.array([_unix_s(photo) for photo in known])
+    points = photo_places(known, site, "auto", label).points_enu_m
+    of_view = {name: number for number, sortie in enumerate(plan.sorties, 1) for name in sortie.viewpoint_ids}
+    views = [view for view in plan.viewpoints if view.id in of_view]
+    planned = np.array([view.position_enu_m for view in views])
+    nearest = [int(np.argmin(np.linalg.norm(planned - point, axis=1))) for point in points]
+    numbers = np.array([of_view[views[index].id] for index in nearest])
+    stated: list[StatedSortie] = []
+    for group in np.split(np.arange(len(known)), np.flatnonzero(np.diff(times_s) > SORTIE_GAP_S) + 1):
+        number = int(np.bincount(numbers[group]).argmax())
+        first_s, last_s, n = float(times_s[group[0]]), float(times_s[group[-1]]), len(group)
+        before = stated[-1] if stated else None
+        if before and before.number == number and last_s - before.started_unix_s <= plan.aircraft.endurance_s:
+            first_s, n = before.started_unix_s, n + before.n_photos
+            stated.pop()
+        stated.append(StatedSortie(number, first_s, last_s - first_s, "", n))
+    return tuple(_around(each, plan.sorties[each.number - 1].duration_s) for each in stated)
+
+
+def _unix_s(photo: PhotoMetadata) -> float:
+    """When a photo was taken, seconds since 1970 UTC."""
+    taken, offset_s = photo.taken_at, photo.utc_offset_s
+    if taken is not None and offset_s is None:
+        return taken.astimezone().timestamp()
+    zone = UTC if taken is None or offset_s is None else timezone(timedelta(seconds=offset_s))
+    clock = photo.exposed_at if taken is None else taken
+    if clock is None:
+        raise ValueError(f"{photo.path}: expected a photo with its time")
+    return clock.replace(tzinfo=zone).timestamp()
+
+
+def _around(sortie: StatedSortie, planned_s: float) -> StatedSortie:
+    """The time between photos as that of a flight that is as long as planned at the least."""
+    duration_s = max(planned_s, sortie.duration_s)
+    start_s = sortie.started_unix_s - 0.5 * (duration_s - sortie.duration_s)
+    return replace(sortie, started_unix_s=round(start_s), duration_s=round(duration_s, 1))
+
+
+def stated_entry(
+    stated: StatedSortie,
+    plan: Plan,
+    site: Site,
+    *,
+    aircraft: str = "",
+    operator: str = "",
+    remarks: str = "",
+    findings: Iterable[Finding] = (),
+) -> BookEntry:
+    """A flight as the pilot states it; what it took of its battery is reckoned from its time and the endurance."""
+    home = geodetic_from_enu(site.origin, [site.home_enu_m])
+    return BookEntry(
+        started_unix_s=round(stated.started_unix_s, 1),
+        ended_unix_s=round(stated.started_unix_s + stated.duration_s, 1),
+        site=site.name,
+        lat_deg=round(float(home.lat_deg[0]), 7),
+        lon_deg=round(float(home.lon_deg[0]), 7),
+        aircraft=aircraft or plan.aircraft.name,
+        vehicle=plain(STATED),
+        sortie=stated.number,
+        battery=stated.battery,
+        battery_used=round(min(1.0, stated.duration_s / plan.aircraft.endurance_s), 4),
+        n_photos=stated.n_photos,
+        n_planned=len(plan.sorties[stated.number - 1].viewpoint_ids),
+        findings=_worst(findings),
+        operator=operator,
+        remarks=remarks,
+    )
+
+
+def is_same_flight(one: BookEntry, other: BookEntry) -> bool:
+    """Whether both are the same sortie of an aircraft at a site, in the air at the same time."""
+    return (
+        not one.is_simulated
+        and not other.is_simulated
+        and (one.site, one.sortie, one.aircraft) == (other.site, other.sortie, other.aircraft)
+        and max(one.started_unix_s, other.started_unix_s) < min(one.ended_unix_s, other.ended_unix_s)
+    )
+
+
+def enter_stated(entries: Sequence[BookEntry], paths: Iterable[Path]) -> None:
+    """Enter what the pilot states, all of it or nothing where a flight is there already.
+
+    Raises
+    ------
+    InputError
+        A flight is in a book already, or as `enter`.
+    """
+    paths = tuple(dict.fromkeys(paths))
+    for path in paths:
+        there = read_book(path)
+        for entry in entries:
+            if any(is_same_flight(entry, each) for each in there):
+                when = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.started_unix_s))
+                raise InputError.say(
+                    "sortie {} of {} at {} is in the log book already; nothing was entered. State another time, or "
+                    "leave it as it is",
+                    *(entry.sortie, entry.site, when),
+                    place=path,
+                )
+    _append(entries, paths)
+
+
 def enter(entry: BookEntry, paths: Iterable[Path]) -> None:
     """Enter a flight in books; each is written whole, or stays as it was.
 
@@ -174,6 +360,10 @@ def enter(entry: BookEntry, paths: Iterable[Path]) -> None:
     InputError
         One of them cannot be read or written; the others have it.
     """
+    _append((entry,), paths)
+
+
+def _append(entries: Sequence[BookEntry], paths: Iterable[Path]) -> None:
     from filelock import FileLock, Timeout
 
     problems: list[InputError] = []
@@ -181,7 +371,7 @@ def enter(entry: BookEntry, paths: Iterable[Path]) -> None:
         try:
             make_folder(path.parent)
             with FileLock(path.with_suffix(".lock"), timeout=LOCK_S):
-                write_atomically(path, encoded(_Book(FORMAT, (*read_book(path), entry))))
+                write_atomically(path, encoded(_Book(FORMAT, (*read_book(path), *entries))))
         except Timeout:
             problems.append(
                 InputError.say("another window writes it for too long; the flight is not in it", place=path)
@@ -236,7 +426,7 @@ def battery_uses(entries: Iterable[BookEntry]) -> tuple[BatteryUse, ...]:
 COLUMNS = (
     *("date", "start_utc", "end_utc", "minutes", "site", "latitude", "longitude", "aircraft", "vehicle", "sortie"),
     *("battery", "battery_used_percent", "photos", "photos_planned", "least_distance_m", "ended", "findings"),
-    *("operator", "simulated", "flight_file"),
+    *("operator", "simulated", "flight_file", "remarks"),
 )
 
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
@@ -264,7 +454,7 @@ def _row(entry: BookEntry) -> tuple[Any, ...]:
         round(entry.duration_s / 60.0, 2),
         *(entry.site, entry.lat_deg, entry.lon_deg, entry.aircraft, entry.vehicle, entry.sortie, entry.battery),
         *(used, entry.n_photos, entry.n_planned, distance_m, entry.ended, " | ".join(entry.findings)),
-        *(entry.operator, int(entry.is_simulated), entry.file),
+        *(entry.operator, int(entry.is_simulated), entry.file, entry.remarks),
     )
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from groundstation.services.fly.flying import check_site
+from groundstation.services.mission.readiness import errors_of
 from groundstation.services.plan.effects import EffectChoice
 from groundstation.vehicle.orders import SortieOrders, sortie_orders
+from groundstation.vehicle.preflight import PreflightCheck, warnings_of
 from missions.mavlink.autopilots import Autopilot
 from missions.mission.build import missions_from_plan
 from missions.simulator.build import decide_effects
@@ -16,10 +18,8 @@ from missions.simulator.conditions import Conditions
 from missions.simulator.scene import flight_scene
 from planning.base.effects import EffectSetting
 from planning.base.errors import MissionError
-from planning.base.findings import Severity
 from planning.base.messages import say
 from planning.base.progress import QUIET, Monitor, Stop, Trace, never
-from planning.checks import check_case
 from planning.checks.case import Case
 from planning.insight.flight_profile import LowFlight
 from planning.plan import Plan
@@ -79,7 +79,7 @@ def prepare_sortie(
     missions = missions_from_plan(plan, site_model.site.origin, site_model.site.home_enu_m)
     is_known = known is not None and known.plan is plan and known.site_model is site_model
     case = known if is_known and known is not None else Case.of(plan, site_model)
-    errors = [finding for finding in check_case(case, monitor) if finding.severity is Severity.ERROR]
+    errors = errors_of(case, monitor)
     if errors:
         first = errors[0].message
         raise MissionError(
@@ -107,6 +107,8 @@ class TakeOff:
         Part of a full battery that it uses.
     low
         How low it flies outside of the column above home; None where it does not leave it.
+    warnings
+        Of the list before take-off, which the pilot confirms by starting.
     """
 
     n_photos: int
@@ -118,9 +120,10 @@ class TakeOff:
     least_distance_m: float
     battery: float
     low: LowFlight | None
+    warnings: tuple[str, ...] = ()
 
 
-def take_off_of(sortie: LiveSortie, autopilot: Autopilot | None) -> TakeOff:
+def take_off_of(sortie: LiveSortie, autopilot: Autopilot | None, checks: Sequence[PreflightCheck] = ()) -> TakeOff:
     """What will happen when a sortie starts on this autopilot."""
     plan, orders = sortie.case.plan, sortie.orders
     flown = plan.sorties[orders.number - 1]
@@ -135,6 +138,7 @@ def take_off_of(sortie: LiveSortie, autopilot: Autopilot | None) -> TakeOff:
         least_distance_m=plan.constraints.min_distance_m,
         battery=orders.duration_s(autopilot) / plan.aircraft.endurance_s,
         low=orders.low,
+        warnings=tuple(check.text for check in warnings_of(checks)),
     )
 
 

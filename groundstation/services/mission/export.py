@@ -87,7 +87,8 @@ def export_plan(
     """Write a plan as mission files: the files, and what their checks found.
 
     Plans that do not say where their site lies take it from the site file. A plan that is not ready to fly on its site
-    is written all the same, with a warning. Where the site is known, the proof goes along, with the verifier.
+    is written all the same, and a warning says why it is not. Where the site is known, the proof goes along, with the
+    verifier.
 
     Raises
     ------

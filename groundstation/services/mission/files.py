@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from groundstation.services.mission.readiness import errors_of
 from groundstation.services.project.input_files import FileKind, expecting
 from groundstation.services.project.project_file import check_not_index
 from missions.formats.encode import default_autopilot, dji_return_height
@@ -23,9 +24,9 @@ from planning.aircraft.catalogue import profile
 from planning.base.errors import GroundStationError, InputError, OperationCancelled
 from planning.base.files import real_path
 from planning.base.findings import Finding, Severity
-from planning.base.messages import say
+from planning.base.messages import about, say
 from planning.base.progress import QUIET, Monitor
-from planning.checks import check_plan
+from planning.checks.case import Case
 from planning.coverage.evaluate import coverage
 from planning.geo.frames import Origin, Vec3
 from planning.geo.geoid import undulation_m
@@ -45,6 +46,9 @@ PROVED_FORMATS = (FileFormat.DJI_KMZ, *MAVLINK_FORMATS)
 BARE_MARGIN_M = 40.0
 FLOOR_M = 2.0
 """Of the airspace of a site made for missions alone, above home; as for imported buildings."""
+
+NOT_READY = "not-ready"
+"""Code of the finding on a plan that breaks a rule."""
 
 IMPORTED = "imported"
 """Method written into plans that come from mission files."""
@@ -82,6 +86,11 @@ class PreparedExport:
         """Whether an aircraft would take the files."""
         errors = any(finding.severity is Severity.ERROR for finding in self.findings)
         return self.encoded is not None and not errors
+
+    @property
+    def is_ready_to_fly(self) -> bool:
+        """Whether the plan breaks no rule of the pre-flight check."""
+        return not_ready(self.findings) is None
 
 
 def prepare_export(
@@ -192,14 +201,18 @@ def readiness(plan: Plan, site_model: SiteModel) -> Iterator[Finding]:
             site_model.site.name,
         )
         yield Finding(Severity.WARNING, "site-changed", text)
-    errors = [found for found in check_plan(plan, site_model) if found.severity is Severity.ERROR]
+    errors = errors_of(Case.of(plan, site_model))
     if errors:
-        text = say(
-            "this plan is not ready to fly ({} findings of the pre-flight check, the first: {})",
-            len(errors),
-            errors[0].message,
-        )
-        yield Finding(Severity.WARNING, "not-ready", text, errors[0].place, float(len(errors)), 0.0, "findings")
+        first, n_more = about(errors[0].place, errors[0].message), len(errors) - 1
+        text = say("NOT ready to fly: {}", first)
+        if n_more:
+            text = say("NOT ready to fly: {}; and {} more", first, n_more)
+        yield Finding(Severity.WARNING, NOT_READY, text, "", float(len(errors)), 0.0, "findings")
+
+
+def not_ready(findings: Sequence[Finding]) -> Finding | None:
+    """What says among them that the plan is not ready to fly; None where it is."""
+    return next((found for found in findings if found.code == NOT_READY), None)
 
 
 def within_item_limit(plan: Plan, site_model: SiteModel, options: ExportOptions) -> tuple[Plan, tuple[Finding, ...]]:

@@ -226,6 +226,16 @@ def readiness_of(findings: Sequence[Finding]) -> Readiness:
     return Readiness.WITH_WARNINGS if has_warnings else Readiness.READY
 
 
+NOT_LOOKED_AT = {"zones": say("zones"), "sun": say("sun"), "cold": say("batteries' temperature")}
+"""What a note says is not known, by the note's code: checks that passed say nothing of it."""
+
+
+def not_looked_at(findings: Iterable[Finding]) -> tuple[Message, ...]:
+    """What could not be looked at, since nobody said the day, or which zones there are."""
+    codes = {finding.code for finding in findings if finding.severity is Severity.NOTE}
+    return tuple(name for code, name in NOT_LOOKED_AT.items() if code in codes)
+
+
 @dataclass(frozen=True, slots=True)
 class FlightDay:
     """What is known of the day of a flight.
@@ -269,6 +279,12 @@ def readiness_findings(
 def additional_findings(case: Case) -> tuple[Finding, ...]:
     """What is found besides the rules of planning, whatever the day: it takes no time worth waiting for."""
     return (*_coverage(case), *_place(case), *_items(case), *_glass(case))
+
+
+def errors_of(case: Case, monitor: Monitor = QUIET) -> tuple[Finding, ...]:
+    """Why a plan is not ready to fly, whatever the day; empty where nothing forbids it."""
+    found = (*check_case(case, monitor), *additional_findings(case))
+    return tuple(each for each in found if each.severity is Severity.ERROR)
 
 
 def _coverage(case: Case) -> Iterator[Finding]:

@@ -2,7 +2,7 @@
 
 Every file is written whole beside its place and read back before it takes the place of another one. Nothing is called
 sent that was not read back byte by byte and understood as what was planned. A route of DJI Fly that is replaced is
-first copied to this computer.
+first copied to this computer. A plan that breaks a rule of the pre-flight check is sent only where the pilot says so.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from pathlib import Path
 
 from groundstation.services.mission.compare import compare_with_plan
 from groundstation.services.mission.export import find_site
-from groundstation.services.mission.files import prepare_export
+from groundstation.services.mission.files import not_ready, prepare_export
 from groundstation.services.mission.storages import App, Route, Storage
 from groundstation.services.project.input_files import read_input_plan
 from missions.formats.options import DEFAULT_OPTIONS, ExportOptions
@@ -114,6 +114,8 @@ class PreparedSending:
     ----------
     replaced
         Files that are there and would be replaced.
+    is_ready_to_fly
+        Whether the plan breaks no rule of the pre-flight check; else the pilot has to say that it is sent.
     refusal
         What has to be put right first; empty where they can be sent.
     """
@@ -121,6 +123,7 @@ class PreparedSending:
     targets: tuple[Target, ...] = ()
     findings: tuple[Finding, ...] = ()
     replaced: tuple[Path, ...] = ()
+    is_ready_to_fly: bool = True
     refusal: str = ""
 
 
@@ -170,7 +173,9 @@ def payload_of_files(
             )
         missions += read
     contents = tuple(read_input_file(path, KMZ_FILE) for path in paths)
-    findings = tuple(found for mission in missions for found in mission.findings)
+    text = say("mission files were not checked on their site: send their plan, or look whether it is ready to fly")
+    unknown = Finding(Severity.WARNING, "not-checked", text)
+    findings = (unknown, *(found for mission in missions for found in mission.findings))
     return Payload(first.stem, contents, tuple(missions), findings)
 
 
@@ -193,7 +198,12 @@ def route_name(text: str) -> str:
 
 
 def targets_of(
-    payload: Payload, storage: Storage, route_ids: Sequence[str] = (), *, may_replace: bool = False
+    payload: Payload,
+    storage: Storage,
+    route_ids: Sequence[str] = (),
+    *,
+    may_replace: bool = False,
+    despite_errors: bool = False,
 ) -> tuple[tuple[Target, ...], tuple[Finding, ...]]:
     """Where each file goes, and what the pilot must know first.
 
@@ -203,12 +213,23 @@ def targets_of(
         Routes of DJI Fly to be replaced, one for each sortie in order; the first letters are enough.
     may_replace
         Another mission of the same name may be replaced. Routes of DJI Fly are always.
+    despite_errors
+        A plan that is not ready to fly is sent, too.
 
     Raises
     ------
     InputError
         Routes are missing, or another mission has the name.
+    MissionError
+        The plan is not ready to fly.
     """
+    against = not_ready(payload.findings)
+    if against is not None and not despite_errors:
+        raise MissionError.say(
+            "not sent. {}. Correct the plan, or take the risk with --despite-errors: the aircraft flies what it is "
+            "sent",
+            against.message,
+        )
     findings = list(_findings(payload, storage))
     if storage.app is App.DJI_FLY:
         targets = tuple(_fly_targets(payload, storage, route_ids))
@@ -244,8 +265,8 @@ def targets_of(
 def prepare_sending(payload: Payload, storage: Storage, route_ids: Sequence[str]) -> PreparedSending:
     """What sending would do; what the user can put right is part of the result, and nothing is raised for it."""
     try:
-        targets, findings = targets_of(payload, storage, route_ids, may_replace=True)
-        return PreparedSending(targets, findings, replaced_files(targets))
+        targets, findings = targets_of(payload, storage, route_ids, may_replace=True, despite_errors=True)
+        return PreparedSending(targets, findings, replaced_files(targets), not_ready(findings) is None)
     except GroundStationError as error:
         return PreparedSending(refusal=str(error))
 

@@ -17,7 +17,7 @@ from missions.flight.flight_file import Flight, is_of_plan, read_flight
 from missions.flight.outcome import FlightReport, Reason
 from missions.flight.record import FlightRecord
 from planning.base.errors import InputError
-from planning.base.messages import Message, say
+from planning.base.messages import Message, joined, say
 from planning.plan import Plan
 from planning.site.records import SiteModel
 
@@ -137,6 +137,8 @@ class Milestones:
         Of the site and of the plan that is shown; None without one.
     n_errors, n_warnings
         What the pre-flight check found in the plan as it is; no number of errors where it has not been checked.
+    not_looked_at
+        What that check could not look at, such as the sun where no time is planned.
     flight, sortie
         Where its flight stands, and which of its sorties, from 1, is to be flown next.
     flown
@@ -154,6 +156,7 @@ class Milestones:
     is_planning: bool = False
     n_errors: int | None = None
     n_warnings: int = 0
+    not_looked_at: tuple[str, ...] = ()
     is_exported: bool = False
     flight: FlightState = FlightState.APART
     sortie: int = 1
@@ -248,10 +251,17 @@ def _mission(now: Milestones) -> Guidance:
         )
     if now.n_warnings:
         further = say("read the warnings; then fly it, first in simulation, or export it")
-        return Guidance(True, say("no errors; warnings: {}", now.n_warnings), further, say("To Fly"), Act.TO_FLY)
+        done = _and_not_looked_at(say("no errors; warnings: {}", now.n_warnings), now)
+        return Guidance(True, done, further, say("To Fly"), Act.TO_FLY)
     done = say("all checks passed; mission files are written") if now.is_exported else say("all checks passed")
     further = say("fly it, first in simulation; or export it for your aircraft")
-    return Guidance(True, done, further, say("To Fly"), Act.TO_FLY)
+    return Guidance(True, _and_not_looked_at(done, now), further, say("To Fly"), Act.TO_FLY)
+
+
+def _and_not_looked_at(done: Message, now: Milestones) -> Message:
+    if not now.not_looked_at:
+        return done
+    return say("{}; not looked at: {}", done, joined(", ", now.not_looked_at))
 
 
 def _fly(now: Milestones) -> Guidance:

@@ -56,6 +56,7 @@ from groundstation.vehicle.preflight import (
     is_ready,
     overruled,
     stands_above_m,
+    warnings_of,
 )
 from groundstation.vehicle.recorder import Recorder
 from groundstation.vehicle.setup import (
@@ -350,6 +351,11 @@ def _check(run: SortieRun) -> Steps:
             raise LinkTimeout(say("not ready for take-off after {:g} s: ", run.options.ready_s) + joined("; ", missing))
         yield None
         yield from _keep_up(run)
+    if run.options.starts_itself and not run.is_simulation:
+        known = {note.text for note in run.notes}
+        for check in warnings_of(checks):
+            if check.text not in known:
+                run.note(f"warning-{check.code}", check.text)
 
 
 def _keep_up(run: SortieRun) -> Steps:

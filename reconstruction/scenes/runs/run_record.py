@@ -37,6 +37,11 @@ RunRecord = dict[str, Any]
 """Content of `scene.json` but for what changes while it is made."""
 
 
+def is_rendered(folder: Path) -> bool:
+    """Whether a folder has photos that were rendered, not taken."""
+    return (folder / RUN_FILE).is_file()
+
+
 def run_record(job: PhotoJob, decisions: Sequence[Decision]) -> RunRecord:
     """What a run is made from; the cameras of all photos are alike."""
     scene, lens = job.scene, job.photos[0].intrinsics

@@ -36,6 +36,11 @@ def test_verdict_says_whether_anything_grounds_the_flight(view):
     assert view.verdict() == "Ready to fly, but read the warnings"
     view.set_findings([f for f in FINDINGS if f.severity is Severity.OK])
     assert view.verdict() == "Ready to fly"
+    unknown = Finding(Severity.NOTE, "zones", "which apply here is not looked at")
+    view.set_findings([*(f for f in FINDINGS if f.severity is Severity.OK), unknown])
+    assert view.verdict() == "Ready to fly; not looked at: zones"
+    view.show_severity(Severity.NOTE, is_shown=False)
+    assert "All checks passed; not looked at: zones." in view.list_view()._placeholder
 
 
 def test_the_day_of_the_flight_is_said_by_clicks_and_may_be_left_open(view):

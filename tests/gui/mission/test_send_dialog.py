@@ -3,8 +3,10 @@
 from dataclasses import replace
 
 import pytest
+from PySide6.QtCore import QPoint
 from PySide6.QtWidgets import QPushButton
 
+from groundstation.gui.mission.export_dialog import ExportDialog
 from groundstation.services.mission.storages import FLY_ROUTES, App, storage_at
 from missions.formats.registry import read_missions
 from planning.base.findings import Severity
@@ -99,4 +101,49 @@ def test_too_few_routes_are_said_and_nothing_can_be_sent(page, context, planned,
     assert "Cannot be sent: " in dialog.state_text()
     assert "make more in DJI Fly where there are too few" in dialog.state_text()
     assert not next(button for button in dialog.findChildren(QPushButton) if button.text() == "Send").isEnabled()
+    dialog.close()
+
+
+@pytest.mark.slow
+def test_a_plan_that_is_not_ready_is_sent_only_once_its_box_is_ticked(page, context, planned, idle, said, devices):  # noqa: F811
+    model, plan = planned
+    too_far = replace(plan, aircraft=replace(plan.aircraft, endurance_s=100.0))
+    dialog = dialog_of(page, idle, context, (model, too_far))
+    dialog._place.setCurrentIndex(1)
+    idle()
+    assert dialog.state_text().startswith("NOT ready to fly, and not sent as it stands")
+    assert not dialog._action.isEnabled()
+    assert not dialog._despite.isChecked()
+    assert "it may crash, or break the law" in dialog._despite.text()
+    dialog._name.setText("north")
+    idle()
+    tick = QPoint(8, dialog._despite.height() // 2)
+    click_on(dialog, dialog._despite, tick)
+    assert dialog._action.isEnabled()
+    dialog._name.setText("south")
+    idle()
+    assert not dialog._despite.isChecked()
+    assert not dialog._action.isEnabled()
+    click_on(dialog, dialog._despite, tick)
+    click_on(dialog, dialog._action)
+    idle()
+    assert [path.name for path in devices[1].iterdir()] == ["south.kmz"]
+    assert said[-2].severity is Severity.WARNING
+    assert said[-2].text.startswith(
+        "Sent all the same. NOT ready to fly: sortie 1: duration with the battery reserve kept"
+    )
+
+
+@pytest.mark.slow
+def test_files_of_a_plan_that_is_not_ready_are_never_called_ready(page, context, planned, idle):  # noqa: F811
+    model, plan = planned
+    too_far = replace(plan, aircraft=replace(plan.aircraft, endurance_s=100.0))
+    context.session.open(opened((model, too_far)), None)
+    idle()
+    press_in(page.left, "Export mission files ...")
+    idle()
+    dialog = page._shared_view.window().findChildren(ExportDialog)[-1]
+    assert dialog.state_text().startswith("NOT ready to fly: see the finding.")
+    assert "Ready" not in dialog.state_text()
+    assert dialog._action.isEnabled()
     dialog.close()

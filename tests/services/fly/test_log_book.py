@@ -20,14 +20,21 @@ from groundstation.services.fly.log_book import (
     book_csv,
     book_path,
     enter,
+    enter_stated,
     entry_of,
+    flight_of_photos,
     read_book,
+    stated_entry,
     write_book_csv,
 )
 from missions.mission.model import GeoPoint
 from planning.base.errors import InputError, LinkTimeout
+from planning.photos.folder import read_photos
 from tests.missions.flight.flights import flown_as_planned, with_durations
 from tests.missions.flight.log_writers import log_site
+from tests.missions.flight.photo_files import write_photos
+from tests.missions.flight.test_photo_folder import plan as two_sorties
+from tests.missions.flight.test_photo_folder import site_model as two_sorties_site
 from tests.missions.plans import example_plan
 
 ENTRY = BookEntry(1.8e9, 1.8e9 + 600.0, "office", 22.3, 114.2, "DJI M3E", "ArduPilot, tcp", 1, "B1", 0.4, 6, 6, 10.2)
@@ -142,3 +149,21 @@ def test_a_table_says_date_and_times_of_utc(tmp_path):
         "1.5",
     )
     assert (row["battery_used_percent"], row["photos"], row["simulated"]) == ("40.0", "6", "0")
+
+
+def test_photos_of_two_batteries_are_two_sorties_in_the_order_of_flight(tmp_path):
+    plan, model = two_sorties(), two_sorties_site()
+    for number, sortie in enumerate((plan.viewpoints[:10], plan.viewpoints[10:])):
+        # The second battery is flown first, half an hour earlier.
+        write_photos(tmp_path / str(number), model.site, sortie, start_s=1800.0 * (1 - number))
+    sorties, findings = flight_of_photos(plan, model, read_photos(tmp_path).photos, "card")
+    assert [(each.number, each.n_photos) for each in sorties] == [(2, 10), (1, 10)]
+    assert sorties[1].started_unix_s - sorties[0].started_unix_s == pytest.approx(1800.0, abs=30.0)
+    for each in sorties:
+        assert each.duration_s >= plan.sorties[each.number - 1].duration_s - 0.1
+    entries = [stated_entry(each, plan, model.site, findings=findings) for each in sorties]
+    enter_stated(entries, [tmp_path / "a.json", tmp_path / "b.json"])
+    assert len(read_book(tmp_path / "a.json")) == 2
+    with pytest.raises(InputError, match="is in the log book already"):
+        enter_stated(entries[1:], [tmp_path / "c.json", tmp_path / "b.json"])
+    assert not (tmp_path / "c.json").exists(), "nothing is entered where one book has it"

@@ -84,8 +84,20 @@ def test_a_plan_that_is_not_ready_is_exported_with_a_warning():
     plan = replace(example_plan(), site="kiosk", home_enu_m=None, origin=None)
     model = kiosk(home_enu_m=(3.0, -40.0, 1.5))
     prepared = prepare_export(plan, model, FileFormat.KML)
-    assert "not-ready" in [finding.code for finding in prepared.findings]
+    (found,) = (finding for finding in prepared.findings if finding.code == "not-ready")
+    assert found.message.startswith("NOT ready to fly: ")
     assert prepared.can_be_written
+    assert not prepared.is_ready_to_fly
+
+
+def test_a_plan_of_a_place_that_nobody_knows_is_not_ready(planned):
+    from dataclasses import replace
+
+    plan, model = planned
+    unknown = replace(model, site=replace(model.site, place_from="unknown"))
+    prepared = prepare_export(plan, unknown, FileFormat.KML)
+    (found,) = (finding for finding in prepared.findings if finding.code == "not-ready")
+    assert found.message.startswith("NOT ready to fly: nobody has said where the site is")
 
 
 def test_a_file_named_twice_is_refused(planned, tmp_path):

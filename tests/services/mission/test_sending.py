@@ -37,12 +37,18 @@ IDS = ("1A2B3C4D-0000-4000-8000-00000000000A", "1A2B3C4D-0000-4000-8000-00000000
 
 
 @pytest.fixture(scope="module")
-def payload():
-    """Two sorties of a plan that hangs in the air: what is sent does not depend on a building."""
+def unready():
+    """Two sorties of a plan that hangs in the air, where no flight is ready."""
     model = SCENES["single-panel"]()
     plan = replace(example_plan(), origin=model.site.origin, home_enu_m=(3.0, -40.0, 1.5))
     site = replace(model.site, home_enu_m=(3.0, -40.0, 1.5))
     return payload_of_plan(plan, replace(model, site=site), "office.flight_2")
+
+
+@pytest.fixture(scope="module")
+def payload(unready):
+    """The same as if it were ready: what is sent does not depend on a building."""
+    return replace(unready, findings=tuple(each for each in unready.findings if each.code != "not-ready"))
 
 
 @pytest.fixture(scope="module")
@@ -83,6 +89,21 @@ def test_what_is_sent_to_a_card_is_the_plan_when_it_is_read_there(payload, card,
     assert [each.path.read_bytes() for each in files] == list(payload.contents)
     assert sum(mission.n_photos for each in files for mission in read_missions(each.path)) == 10
     assert [found.code for found in findings if found.code == "route-name"] == ["route-name"]
+
+
+def test_a_plan_that_is_not_ready_is_sent_only_where_the_pilot_says_so(unready, card, tmp_path):
+    with pytest.raises(
+        MissionError, match=r"^not sent\. NOT ready to fly: v0006: viewpoints outside the airspace.*4 more"
+    ) as no:
+        sent(unready, storage_at(card), tmp_path)
+    assert "--despite-errors" in str(no.value)
+    assert not list(card.iterdir())
+    prepared = sending.prepare_sending(unready, storage_at(card), ())
+    assert (prepared.refusal, prepared.is_ready_to_fly) == ("", False)
+    files, findings = sent(unready, storage_at(card), tmp_path, despite_errors=True)
+    assert len(files) == 2
+    (warned,) = (found for found in findings if found.code == "not-ready")
+    assert warned.severity is Severity.WARNING
 
 
 def test_the_same_mission_again_is_there_already_and_another_one_is_not_overwritten(payload, card, tmp_path):

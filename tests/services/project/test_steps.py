@@ -178,6 +178,11 @@ def test_a_plan_with_warnings_is_done_and_they_are_to_be_read():
     assert found.next.startswith("read the warnings")
     clean = guidance(Step.MISSION, Milestones(n_panels=280, n_viewpoints=60, n_errors=0))
     assert clean.done == "all checks passed"
+    unknown = Milestones(n_panels=280, n_viewpoints=60, n_errors=0, not_looked_at=("zones", "sun"))
+    assert guidance(Step.MISSION, unknown).done == "all checks passed; not looked at: zones, sun"
+    assert guidance(Step.MISSION, unknown).is_done
+    warned = guidance(Step.MISSION, replace(unknown, n_warnings=2))
+    assert warned.done == "no errors; warnings: 2; not looked at: zones, sun"
 
 
 def test_edits_take_back_what_they_spoil_and_nothing_else():

@@ -223,6 +223,12 @@ def test_a_camera_or_gimbal_that_is_switched_off_is_warned_of(orders, autopilot,
     assert all("restart the vehicle" in text for text in warned)
 
 
+def test_what_the_list_before_take_off_warns_of_is_told_where_nobody_confirms_it(orders):
+    _, outcome = fly(orders, toy_at_home(orders))
+    (warned,) = (note.text for note in outcome.notes if note.code == "warning-wind")
+    assert warned.startswith("not measured on the ground: look up, or measure it; ")
+
+
 def test_a_camera_that_was_just_set_up_takes_effect_after_a_reboot(orders):
     toy = toy_at_home(orders, parameters={"CAM1_TYPE": 0.0, "MNT1_TYPE": 0.0})
     _, outcome = fly(orders, toy)
