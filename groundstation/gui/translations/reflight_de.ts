@@ -1197,6 +1197,73 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     </message>
 </context>
 <context>
+    <name>EnterFlightDialog</name>
+    <message>
+        <source>Enter the flight in the log book</source>
+        <translation>Flug ins Logbuch eintragen</translation>
+    </message>
+    <message>
+        <source>Take-off and minutes are those of the photos, and at least as long as planned. Correct them, and name the batteries: their cycles are counted.</source>
+        <translation>Start und Minuten stammen von den Fotos und sind mindestens so lang wie geplant. Berichtigen Sie sie und nennen Sie die Akkus: Ihre Zyklen werden gezählt.</translation>
+    </message>
+    <message>
+        <source>Enter</source>
+        <translation>Eintragen</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>Abbrechen</translation>
+    </message>
+    <message>
+        <source>Aircraft</source>
+        <translation>Fluggerät</translation>
+    </message>
+    <message>
+        <source>Remarks</source>
+        <translation>Bemerkungen</translation>
+    </message>
+    <message>
+        <source>Sortie {0}</source>
+        <translation>Einsatz {0}</translation>
+    </message>
+    <message>
+        <source>{0}, take-off</source>
+        <translation>{0}, Start</translation>
+    </message>
+    <message>
+        <source>By this computer&apos;s clock and time zone</source>
+        <translation>Nach Uhr und Zeitzone dieses Computers</translation>
+    </message>
+    <message>
+        <source>{0}, minutes</source>
+        <translation>{0}, Minuten</translation>
+    </message>
+    <message>
+        <source>{0}, battery</source>
+        <translation>{0}, Akku</translation>
+    </message>
+    <message>
+        <source>Take-off</source>
+        <translation>Start</translation>
+    </message>
+    <message>
+        <source>Time</source>
+        <translation>Zeit</translation>
+    </message>
+    <message>
+        <source>Battery</source>
+        <translation>Akku</translation>
+    </message>
+    <message>
+        <source>Photos</source>
+        <translation>Fotos</translation>
+    </message>
+    <message>
+        <source>Entered in the log book, sorties: {0}</source>
+        <translation>Ins Logbuch eingetragen, Einsätze: {0}</translation>
+    </message>
+</context>
+<context>
     <name>ErrorStrip</name>
     <message>
         <source>Photos of the data set, and how well the model shows them</source>
@@ -1251,6 +1318,10 @@ Bild in dieser Entfernung: {4} x {5}</translation>
     <message>
         <source>Not to be written like this: see the errors.</source>
         <translation>So nicht zu schreiben: siehe die Fehler.</translation>
+    </message>
+    <message>
+        <source>NOT ready to fly: see the finding. Files that can be written all the same, to look at: {0}. Do not fly them before the plan is corrected.</source>
+        <translation>NICHT flugbereit: siehe Befund. Dateien, die zum Ansehen trotzdem geschrieben werden können: {0}. Fliegen Sie sie nicht, bevor der Plan korrigiert ist.</translation>
     </message>
     <message>
         <source>Ready to be written, files: {0}. Read the warnings.</source>
@@ -1487,6 +1558,10 @@ Blickrichtung: {2}</translation>
         <translation>Alle Prüfungen bestanden. Der Knopf mit dem Haken zeigt sie.</translation>
     </message>
     <message>
+        <source>All checks passed; not looked at: {0}. The button with the tick lists them.</source>
+        <translation>Alle Prüfungen bestanden; nicht betrachtet: {0}. Der Knopf mit dem Haken zeigt sie.</translation>
+    </message>
+    <message>
         <source>Older than the plan: it was changed after this check.</source>
         <translation>Älter als der Plan: Er wurde nach dieser Prüfung geändert.</translation>
     </message>
@@ -1513,6 +1588,10 @@ Blickrichtung: {2}</translation>
     <message>
         <source>NOT ready to fly</source>
         <translation>NICHT flugbereit</translation>
+    </message>
+    <message>
+        <source>{0}; not looked at: {1}</source>
+        <translation>{0}; nicht betrachtet: {1}</translation>
     </message>
 </context>
 <context>
@@ -1755,6 +1834,12 @@ Blickrichtung: {2}</translation>
     <message>
         <source>TOO EARLY: now it may come too near to an aircraft in the air. Wait {0}.</source>
         <translation>ZU FRÜH: jetzt kann es einem Fluggerät in der Luft zu nahe kommen. Warten Sie: {0}.</translation>
+    </message>
+    <message>
+        <source>The list before take-off warns; by starting you confirm:
+{0}</source>
+        <translation>Die Liste vor dem Start warnt; mit dem Start bestätigen Sie:
+{0}</translation>
     </message>
     <message>
         <source>{0} is slower than the plan, which reckons with {1}.</source>
@@ -5079,6 +5164,10 @@ Blickrichtung: {3}</translation>
 <context>
     <name>PhotosController</name>
     <message>
+        <source>Log book</source>
+        <translation>Logbuch</translation>
+    </message>
+    <message>
         <source>Make a coarse model</source>
         <translation>Grobmodell machen</translation>
     </message>
@@ -5143,6 +5232,10 @@ Blickrichtung: {3}</translation>
         <translation>Gefundene Scheiben verwenden</translation>
     </message>
     <message>
+        <source>Was this a flight of the active plan by card? “Enter in log book” takes its times from here.</source>
+        <translation>War dies ein Flug des aktiven Plans per Karte? „Ins Logbuch eintragen“ übernimmt seine Zeiten von hier.</translation>
+    </message>
+    <message>
         <source>Solve panels</source>
         <translation>Scheiben berechnen</translation>
     </message>
@@ -5180,6 +5273,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Plan the next battery</source>
         <translation>Nächsten Akku planen</translation>
+    </message>
+    <message>
+        <source>Enter in log book ...</source>
+        <translation>Ins Logbuch eintragen ...</translation>
     </message>
     <message>
         <source>Render these photos ...</source>
@@ -5232,6 +5329,10 @@ Blickrichtung: {3}</translation>
     <message>
         <source>Looks at what the panes mirror in these photos, and plans the flight that adds most to them</source>
         <translation>Betrachtet, was die Scheiben in diesen Fotos spiegeln, und plant den Flug, der am meisten hinzufügt</translation>
+    </message>
+    <message>
+        <source>For a flight of the active plan that was not watched here: the times are those of its photos</source>
+        <translation>Für einen Flug des aktiven Plans, der hier nicht verfolgt wurde: Die Zeiten sind die seiner Fotos</translation>
     </message>
     <message>
         <source>Panels</source>
@@ -7352,6 +7453,10 @@ Damit weiterarbeiten?</translation>
         <translation>Senden</translation>
     </message>
     <message>
+        <source>The aircraft flies what it is sent: into things, or where flights are forbidden</source>
+        <translation>Das Fluggerät fliegt, was ihm gesendet wird: auch gegen Hindernisse oder wo Flüge verboten sind</translation>
+    </message>
+    <message>
         <source>Device</source>
         <translation>Gerät</translation>
     </message>
@@ -7400,6 +7505,10 @@ Damit weiterarbeiten?</translation>
         <translation>{0}, Wegpunkte: {1}, {2}</translation>
     </message>
     <message>
+        <source>NOT ready to fly, and not sent as it stands: see the finding, and correct the plan. The aircraft flies what it is sent, into things or where flights are forbidden.</source>
+        <translation>NICHT flugbereit und so nicht gesendet: siehe Befund; korrigieren Sie den Plan. Das Fluggerät fliegt, was ihm gesendet wird, auch gegen Hindernisse oder wo Flüge verboten sind.</translation>
+    </message>
+    <message>
         <source>Ready to be sent, files: {0}. Read the warnings.</source>
         <translation>Bereit zum Senden, Dateien: {0}. Lesen Sie die Warnungen.</translation>
     </message>
@@ -7424,6 +7533,10 @@ Kopien von ihnen bleiben auf diesem Computer.</translation>
         <translation>Schreiben und Zurücklesen ...</translation>
     </message>
     <message>
+        <source>Sent all the same. {0}</source>
+        <translation>Trotzdem gesendet. {0}</translation>
+    </message>
+    <message>
         <source>Sent, read back and equal to the plan: {0}. Eject the device before you pull it out.</source>
         <translation>Gesendet, zurückgelesen und gleich dem Plan: {0}. Werfen Sie das Gerät aus, bevor Sie es abziehen.</translation>
     </message>
@@ -7434,6 +7547,10 @@ Kopien von ihnen bleiben auf diesem Computer.</translation>
     <message>
         <source>Not sent: {0}</source>
         <translation>Nicht gesendet: {0}</translation>
+    </message>
+    <message>
+        <source>Send it all the same: it may crash, or break the law</source>
+        <translation>Trotzdem senden: Absturz oder Verstoß möglich</translation>
     </message>
 </context>
 <context>
@@ -7993,6 +8110,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Mitsuba, {0} Strahlen</translation>
     </message>
     <message>
+        <source>NOT ready to fly: {0}</source>
+        <translation>NICHT flugbereit: {0}</translation>
+    </message>
+    <message>
+        <source>NOT ready to fly: {0}; and {1} more</source>
+        <translation>NICHT flugbereit: {0}; und {1} weitere</translation>
+    </message>
+    <message>
         <source>Next sortie</source>
         <translation>Nächster Einsatz</translation>
     </message>
@@ -8445,6 +8570,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Autopilot: {0}</translation>
     </message>
     <message>
+        <source>batteries&apos; temperature</source>
+        <translation>Temperatur der Akkus</translation>
+    </message>
+    <message>
         <source>begin with a building model, photos of a first flight, or a mission of another program</source>
         <translation>mit einem Gebäudemodell, Fotos eines ersten Flugs oder der Mission eines anderen Programms beginnen</translation>
     </message>
@@ -8777,6 +8906,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>ends at byte {0} in the middle of an entry; write the file again</source>
         <translation>endet bei Byte {0} mitten in einem Eintrag; die Datei neu schreiben</translation>
+    </message>
+    <message>
+        <source>entered: sortie {0}, {1}, {2} min, {3}, battery {4}</source>
+        <translation>eingetragen: Einsatz {0}, {1}, {2} min, {3}, Akku {4}</translation>
     </message>
     <message>
         <source>error {0}</source>
@@ -10107,6 +10240,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>sie gilt nur zu manchen Zeiten, und es ist keine Zeit geplant (--at)</translation>
     </message>
     <message>
+        <source>it can be armed, but has trouble with: {0}; find out why, or start only where the flight does without</source>
+        <translation>es lässt sich scharf schalten, hat aber Schwierigkeiten mit: {0}; klären Sie, warum, oder starten Sie nur, wo der Flug ohne auskommt</translation>
+    </message>
+    <message>
         <source>it cannot</source>
         <translation>es kann nicht</translation>
     </message>
@@ -10651,6 +10788,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>übersehen</translation>
     </message>
     <message>
+        <source>mission files were not checked on their site: send their plan, or look whether it is ready to fly</source>
+        <translation>Missionsdateien wurden nicht an ihrem Ort geprüft: Senden Sie ihren Plan oder sehen Sie nach, ob er flugbereit ist</translation>
+    </message>
+    <message>
         <source>missions: {0}</source>
         <translation>Missionen: {0}</translation>
     </message>
@@ -10697,6 +10838,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>name: several objects have the name &apos;{0}&apos;; give the GlobalId</source>
         <translation>name: mehrere Objekte haben den Namen &apos;{0}&apos;; die GlobalId nennen</translation>
+    </message>
+    <message>
+        <source>named {0} times, and {1} to be entered</source>
+        <translation>{0}-mal genannt, einzutragen sind {1}</translation>
     </message>
     <message>
         <source>names a coordinate reference system that is not known here</source>
@@ -11011,6 +11156,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>wird nicht gemieden</translation>
     </message>
     <message>
+        <source>not measured on the ground: look up, or measure it; {0} flies in up to {1} m/s</source>
+        <translation>am Boden nicht gemessen: Sehen Sie nach oben oder messen Sie ihn; {0} fliegt bis {1} m/s</translation>
+    </message>
+    <message>
         <source>not proved: it knows no checksums</source>
         <translation>nicht bewiesen: es kennt keine Prüfsummen</translation>
     </message>
@@ -11025,6 +11174,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>not sent, the aircraft would refuse it: {0}</source>
         <translation>nicht gesendet, das Luftfahrzeug würde es ablehnen: {0}</translation>
+    </message>
+    <message>
+        <source>not sent. {0}. Correct the plan, or take the risk with --despite-errors: the aircraft flies what it is sent</source>
+        <translation>nicht gesendet. {0}. Korrigieren Sie den Plan oder nehmen Sie das Risiko mit --despite-errors auf sich: Das Fluggerät fliegt, was ihm gesendet wird</translation>
     </message>
     <message>
         <source>not stated how many: keep everybody out who is not involved</source>
@@ -11831,6 +11984,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>auf {0} von {1} betrachteten Fotos steht etwas vor Scheiben</translation>
     </message>
     <message>
+        <source>sortie {0} of {1} at {2} is in the log book already; nothing was entered. State another time, or leave it as it is</source>
+        <translation>Einsatz {0} von {1} um {2} steht schon im Logbuch; nichts wurde eingetragen. Geben Sie eine andere Zeit an oder lassen Sie es, wie es ist</translation>
+    </message>
+    <message>
         <source>sorties {0} and {1}</source>
         <translation>Einsätze {0} und {1}</translation>
     </message>
@@ -11889,6 +12046,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>state how many people are below; without that there is no ground risk class</source>
         <translation>geben Sie an, wie viele Menschen darunter sind; ohne das gibt es keine Bodenrisikoklasse</translation>
+    </message>
+    <message>
+        <source>state the take-off with --at, such as 2026-06-21T10:30, or name the --photos</source>
+        <translation>Geben Sie den Start mit --at an, etwa 2026-06-21T10:30, oder nennen Sie die Fotos mit --photos</translation>
     </message>
     <message>
         <source>stated by the pilot</source>
@@ -12081,6 +12242,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the aperture is not known, so depth of field is not checked; state it</source>
         <translation>die Blende ist nicht bekannt, daher wird die Schärfentiefe nicht geprüft; angeben</translation>
+    </message>
+    <message>
+        <source>the autopilot says where it is, but not how sure of it: compare it with the map</source>
+        <translation>der Autopilot sagt, wo er ist, aber nicht, wie sicher er ist: Vergleichen Sie es mit der Karte</translation>
     </message>
     <message>
         <source>the battery on board</source>
@@ -12531,6 +12696,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Fotos dieses Grobmodells lagen in {0}, das es nicht mehr gibt</translation>
     </message>
     <message>
+        <source>the photos show none of these sorties; state the take-off with --at</source>
+        <translation>die Fotos zeigen keinen dieser Einsätze; geben Sie den Start mit --at an</translation>
+    </message>
+    <message>
         <source>the photos show {0} of the {1} sections that the plan promised ({2} %)</source>
         <translation>die Fotos zeigen {0} der {1} Sektoren, die der Plan versprach ({2} %)</translation>
     </message>
@@ -12557,6 +12726,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the plan has no proof beside it ({0}); plan it again</source>
         <translation>neben dem Plan liegt kein Beweis ({0}); planen Sie ihn neu</translation>
+    </message>
+    <message>
+        <source>the plan has no sortie {0}; it has {1}</source>
+        <translation>der Plan hat keinen Einsatz {0}; er hat {1}</translation>
     </message>
     <message>
         <source>the plan has no sorties, so there is nothing that could fall; plan a flight first</source>
@@ -12947,6 +13120,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Zeit in der Luft</translation>
     </message>
     <message>
+        <source>to enter this flight in the log book, with the times of its photos:</source>
+        <translation>um diesen Flug mit den Zeiten seiner Fotos ins Logbuch einzutragen:</translation>
+    </message>
+    <message>
         <source>too few points are seen in several photos</source>
         <translation>zu wenige Punkte sind in mehreren Fotos zu sehen</translation>
     </message>
@@ -13121,6 +13298,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>zone &apos;{0}&apos; differs between files ({1}); name one as FILE/ZONE</source>
         <translation>Zone &apos;{0}&apos; ist in den Dateien verschieden ({1}); eine als DATEI/ZONE nennen</translation>
+    </message>
+    <message>
+        <source>zones</source>
+        <translation>Zonen</translation>
     </message>
     <message>
         <source>zones: {0}</source>
@@ -13315,6 +13496,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0}, Telemetrie-Log</translation>
     </message>
     <message>
+        <source>{0}, which is less sure than the {1} m allowed: look whether it stands there</source>
+        <translation>{0}, was unsicherer ist als die erlaubten {1} m: Sehen Sie nach, ob es dort steht</translation>
+    </message>
+    <message>
         <source>{0}: facades of unseen views</source>
         <translation>{0}: Fassaden ungesehener Standpunkte</translation>
     </message>
@@ -13369,6 +13554,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0}; no camera needs that</source>
         <translation>{0}; keine Kamera braucht das</translation>
+    </message>
+    <message>
+        <source>{0}; not looked at: {1}</source>
+        <translation>{0}; nicht betrachtet: {1}</translation>
     </message>
     <message>
         <source>{0}; or attach it to the site as its terrain, where what it leaves open can be stated</source>
@@ -14321,10 +14510,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the site file of &apos;{0}&apos; has changed since this plan was made; what the mission takes from it (return height, fences) is as it is now</source>
         <translation>die Standortdatei von &apos;{0}&apos; hat sich geändert, seit dieser Plan gemacht wurde; was die Mission daraus nimmt (Rückkehrhöhe, Zäune), ist wie jetzt</translation>
-    </message>
-    <message>
-        <source>this plan is not ready to fly ({0} findings of the pre-flight check, the first: {1})</source>
-        <translation>dieser Plan ist nicht flugbereit ({0} Befunde der Vorflugprüfung, der erste: {1})</translation>
     </message>
     <message>
         <source>{0} keeps the items of about {1} photos, but a sortie of this plan has {2}; the same views were shared out among {3} sorties for these files</source>
@@ -19731,14 +19916,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the autopilot cannot be armed yet ({0})</source>
         <translation>der Autopilot lässt sich noch nicht scharfschalten ({0})</translation>
-    </message>
-    <message>
-        <source>it can be armed, but has trouble with: </source>
-        <translation>er lässt sich scharfschalten, hat aber Mühe mit: </translation>
-    </message>
-    <message>
-        <source>not measured on the ground; look up</source>
-        <translation>am Boden nicht gemessen; nach oben schauen</translation>
     </message>
     <message>
         <source>the {0} was not uploaded yet</source>
