@@ -58,6 +58,11 @@ where less is near than `NEAR_SHARE`: those of `office` are 2 dB below with 50 p
 SLICE, VIEWS_PER_BLOCK = 16, 500
 """Views chosen, and candidates looked at, between two looks at the clock, at least."""
 
+LEAST_LATE, LATE_EACH = 500, 4
+"""Candidates that the rest of the views is chosen from once the time is over, and for each of those views. With 20 000
+candidates 0.1 dB less is expected than of all of them after 50 to 560 views, in 0.03 to 0.3 s in the place of 0.3 to 1;
+what was largest when it was looked at last, unseen since, is 0.5 to 1 dB worse."""
+
 NO_GAIN = 1e-12
 """Of all weights together: gains up to it are rounding."""
 
@@ -193,16 +198,15 @@ def fill_gains(state: ErrorState, gains: NDArray[np.float64]) -> None:
 
 
 @kernel
-def greedy_steps(state: ErrorState, chosen: NDArray[np.int64], n_chosen: int, n_wanted: int, is_looked_at: bool) -> int:
+def greedy_steps(state: ErrorState, chosen: NDArray[np.int64], n_chosen: int, n_wanted: int) -> int:
     """Add the candidate of the largest gain until `n_wanted` are chosen or nothing is gained.
 
-    Without `is_looked_at` bounds are taken for gains.
     None is chosen twice: its bound is minus infinity from then on. So is that of one too close to another.
     """
     least = NO_GAIN * state.weights.sum()
     while n_chosen < n_wanted:
         best, looked_at = int(np.argmax(state.bounds)), -1
-        while is_looked_at and best != looked_at and state.bounds[best] > least:
+        while best != looked_at and state.bounds[best] > least:
             state.bounds[best] = gain_of(state, best)
             looked_at, best = best, int(np.argmax(state.bounds))
         if state.bounds[best] <= least:
@@ -253,15 +257,21 @@ def error_state(
 def choose_for_least_error(state: ErrorState, n_wanted: int, monitor: Monitor, stop: Stop = never) -> NDArray[np.int64]:
     """Numbers of candidates chosen greedily, in order, at most `n_wanted`; the state holds them afterwards.
 
-    When `stop` asks for an end, the others are those whose gains were largest when they were looked at last.
+    When `stop` asks for an end, the others are chosen among some whose gains were largest when they were looked at
+    last.
     """
     chosen, n_chosen = np.zeros(min(n_wanted, len(state.bounds)), np.int64), 0
     while n_chosen < len(chosen):
         if stop():
-            return chosen[: int(greedy_steps(state, chosen, n_chosen, len(chosen), False))]
+            n_kept = max(LEAST_LATE, LATE_EACH * (len(chosen) - n_chosen))
+            others = np.argsort(state.bounds)[:-n_kept]
+            bounds, state.bounds[others] = state.bounds[others], -np.inf
+            n_now = int(greedy_steps(state, chosen, n_chosen, len(chosen)))
+            state.bounds[others] = bounds  # those that were kept may all be too close to others
+            return chosen[: int(greedy_steps(state, chosen, n_now, len(chosen)))]
         monitor.report(say("choosing views"), n_chosen, len(chosen))
         slice_end = min(len(chosen), n_chosen + SLICE)
-        n_now = int(greedy_steps(state, chosen, n_chosen, slice_end, True))
+        n_now = int(greedy_steps(state, chosen, n_chosen, slice_end))
         if n_now < slice_end:
             return chosen[:n_now]
         n_chosen = n_now

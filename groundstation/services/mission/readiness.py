@@ -142,7 +142,7 @@ SUBJECTS = {
         (
             say("Mission file"),
             "action autopilot-items item waypoint fly-to-wayline fly-waypoints file-name finish garbled "
-            "nan stale-distance no-mission no-template option-left-out other-app parts-disagree route "
+            "nan not-checked stale-distance no-mission no-template option-left-out other-app parts-disagree route "
             "simplified stated-time dropped-do after-the-end unknown-command unsupported version aircraft",
         ),
         (say("Project"), "loose-files old-format plan-changed plan-left-out read-only site-changed"),
