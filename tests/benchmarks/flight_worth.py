@@ -13,7 +13,7 @@ import numpy as np
 from groundstation.services.worth import FlightResult, WorthRequest, worth_tradeoff
 from tests.benchmarks.harness import Benchmark, Context, Row
 
-COUNTS = {"planar": (50, 100, 200), "curved": (50, 100), "court": (50, 100), "planar-far": (100,)}
+COUNTS = {"planar": (50, 100, 200), "curved": (50, 100, 200), "court": (50, 100), "planar-far": (100,)}
 """Photos of the flights over each scene."""
 
 FAR = ("planar-far",)
