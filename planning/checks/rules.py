@@ -124,7 +124,7 @@ def terrain_unknown(model: SiteModel) -> Iterator[Finding]:
     if model.site.terrain is None:
         text = say(
             "no terrain was given, so the ground counts as level at {:g} m all around: where it rises, flights are "
-            "lower above it than it says here; attach its heights ('site terrain', or Terrain... in the Site tab)",
+            "lower above it than it says here; attach its heights to the site",
             model.site.airspace.ground_z_m,
         )
         yield Finding(Severity.NOTE, "terrain", text)
@@ -141,7 +141,7 @@ def _terrain_apart(model: SiteModel, terrain: Terrain) -> Iterator[Finding]:
     solids, foot = model.building.vertices_enu_m, panel_corners(model.site).reshape(-1, 3)
     points = solids if len(solids) else foot
     over = len(points) > 0 and bool(((home[0] >= points.min(axis=0)) & (home[0] <= points.max(axis=0)))[:2].all())
-    advice = say("one of them is wrong: attach the right terrain, or bring it to home ('--shift home')")
+    advice = say("one of them is wrong: attach the right terrain, or shift it to home")
     if abs(off_m) > limit_m and not (over and off_m > 0.0):
         text = say(
             "home lies {:+.1f} m off the terrain, which is good to {:g} m; {}", off_m, terrain.accuracy_m, advice

@@ -11032,6 +11032,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>keine Sonne fällt auf Scheiben</translation>
     </message>
     <message>
+        <source>no terrain was given, so the ground counts as level at {0} m all around: where it rises, flights are lower above it than it says here; attach its heights to the site</source>
+        <translation>es wurde kein Gelände angegeben; der Boden zählt deshalb ringsum als eben auf {0} m: wo er ansteigt, liegen Flüge niedriger über ihm, als hier steht; fügen Sie dem Standort seine Höhen hinzu</translation>
+    </message>
+    <message>
         <source>no top-up was written; --all writes it all the same</source>
         <translation>kein Ergänzungsflug wurde geschrieben; --all schreibt ihn trotzdem</translation>
     </message>
@@ -11330,10 +11334,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>one of the arguments %s is required</source>
         <translation>eines der Argumente %s ist nötig</translation>
-    </message>
-    <message>
-        <source>one of them is wrong: attach the right terrain, or bring it to home (&apos;--shift home&apos;)</source>
-        <translation>eines von beiden stimmt nicht: fügen Sie das richtige Gelände hinzu, oder bringen Sie es auf die Höhe des Startplatzes (&apos;--shift home&apos;)</translation>
     </message>
     <message>
         <source>one that this ground station had not put there was removed, as the pilot said ({0})</source>
@@ -16056,16 +16056,16 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Einträge dazu führen, und es für andere Programme exportieren</translation>
     </message>
     <message>
-        <source>no terrain was given, so the ground counts as level at {0} m all around: where it rises, flights are lower above it than it says here; attach its heights (&apos;site terrain&apos;, or Terrain... in the Site tab)</source>
-        <translation>es wurde kein Gelände angegeben; der Boden zählt deshalb ringsum als eben auf {0} m: wo er ansteigt, liegen Flüge niedriger über ihm, als hier steht; fügen Sie seine Höhen hinzu (&apos;site terrain&apos;, oder Gelände... im Reiter Standort)</translation>
-    </message>
-    <message>
         <source>nobody has said where the site is, or how large: make its coarse model again with its origin (--origin) and with a distance or control points, or set the site origin on the Site tab once its size is known</source>
         <translation>niemand hat gesagt, wo der Standort ist, oder wie groß: machen Sie sein Grobmodell noch einmal mit Nullpunkt (--origin) und mit einer Strecke oder Passpunkten, oder setzen Sie den Nullpunkt im Reiter Standort, sobald seine Größe bekannt ist</translation>
     </message>
     <message>
         <source>not a GeoTIFF that can be shown: it is cut off, damaged or of a kind that is not known here; copy or export it again</source>
         <translation>kein GeoTIFF, das sich zeigen lässt: die Datei ist abgeschnitten, beschädigt oder von unbekannter Art; kopieren oder exportieren Sie sie erneut</translation>
+    </message>
+    <message>
+        <source>one of them is wrong: attach the right terrain, or shift it to home</source>
+        <translation>eines von beiden stimmt nicht: fügen Sie das richtige Gelände hinzu, oder verschieben Sie es auf die Höhe des Startplatzes</translation>
     </message>
     <message>
         <source>sections seen only with pixels larger than {0} mm: {1} of {2} covered</source>
