@@ -836,6 +836,17 @@ def test_textured_layers_are_drawn_in_motion_only_where_frames_were_measured_to_
     assert row.note.startswith("drawn at rest only: a frame takes 200 ms" if is_slow else "drawn always: a frame")
     turn_until(application, lambda: not view._is_moving)
     assert Layer.SURROUNDINGS not in canvas._hidden
+    # A flight leaves the view no rest.
+    view.set_watched(True)
+    assert (Layer.SURROUNDINGS in canvas._hidden) == is_slow
+    view._begin(True)
+    assert Layer.SURROUNDINGS in canvas._hidden, "nobody knows yet how long frames take"
+    view.set_watched(False)
+    assert Layer.SURROUNDINGS not in canvas._hidden
+    view.set_watched(True)
+    view._begin(False)
+    assert Layer.SURROUNDINGS not in canvas._hidden, "a graphics card draws them always"
+    view.set_watched(False)
 
 
 def test_frames_of_a_turn_are_measured_where_a_processor_draws(application, view):

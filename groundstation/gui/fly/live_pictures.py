@@ -446,6 +446,7 @@ class LiveScene:
     ) -> None:
         """Where it is, was and flies next, and what its camera sees: a pyramid, and its border on the site."""
         canvas, look = self._scene.canvas(), colours()
+        self._scene.set_watched(True)
         canvas.draw("live-track", _track(track_enu_m, look.accent))
         if state.motion is None:
             return
@@ -471,6 +472,7 @@ class LiveScene:
     def clear(self) -> None:
         """Take everything away."""
         self._drawn_states = None
+        self._scene.set_watched(False)
         self.draw_others("", None, ())
         for name in NAMES:
             self._scene.canvas().draw(name, ())

@@ -6,6 +6,7 @@ loop, and not while the picture is hidden.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
@@ -299,7 +300,7 @@ class ScenePicture(QWidget):
         self._hover: Item | None = None
         self._hidden: frozenset[Layer] = frozenset({Layer.FRUSTA})
         self._textured_frame_s: float | None = None
-        self._is_moving, self._is_software = False, False
+        self._is_moving, self._is_watched, self._is_software = False, False, False
         self._live_labels: tuple[Label, ...] = ()
         self._surfaces: tuple[Surface, ...] = ()
         self._has_photos = False
@@ -397,12 +398,20 @@ class ScenePicture(QWidget):
         self._is_moving = is_moving
         self._show_textured()
 
+    def set_watched(self, is_watched: bool) -> None:
+        """Whether a flight moves in the view: it is at rest for no moment then."""
+        if is_watched != self._is_watched:
+            self._is_watched = is_watched
+            self._show_textured()
+
     def _show_textured(self) -> None:
-        """Textured layers that keep the view from turning smoothly are drawn while it rests."""
-        is_slow = self._textured_frame_s is not None and self._textured_frame_s > SMOOTH_FRAME_S
+        """Textured layers that keep the view from turning smoothly, or may in a flight, are drawn while it rests."""
+        unknown_s = math.inf if self._is_software and self._is_watched else 0.0
+        frame_s = unknown_s if self._textured_frame_s is None else self._textured_frame_s
+        is_late = frame_s > SMOOTH_FRAME_S and (self._is_moving or self._is_watched)
         for layer in TEXTURED:
             is_hidden = layer in self._hidden or (layer is Layer.PHOTOS and self.is_painted())
-            self._canvas.set_shown(layer, not is_hidden and not (is_slow and self._is_moving))
+            self._canvas.set_shown(layer, not is_hidden and not is_late)
 
     def _want_surroundings(self) -> None:
         """Ask for what the site's virtual scene looks like, where it is to be shown and nobody has said yet."""
