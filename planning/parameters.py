@@ -49,9 +49,9 @@ DEFAULT_VIEWS, MAX_VIEWS = 560, 20_000
 LARGEST_SEED = 2**63 - 1
 """What 64-bit integers of files and other programs hold."""
 
-DEFAULT_SHARE, DEFAULT_GAIN_DB = 0.99, 0.5
-"""Where greedy is told no goal: share of the reachable sections that a choice by sections covers, and what another
-battery still has to bring to one for the model's pictures: what eyes begin to see."""
+DEFAULT_SHARE = 0.99
+"""Share of the reachable sections that is covered where greedy is told no goal; a choice for the model's pictures takes
+as many views as that."""
 
 GOAL, HOW, WHICH, FLIGHT = "how much (one goal at most)", "how", "which views count", "flight"
 CAMERA = "camera"
@@ -531,7 +531,6 @@ class PlanParameters:
         option="--good-enough",
         metavar="DB",
         group=GOAL,
-        unset="0.5, where no goal is set",
         row="first",
         step=0.1,
     )
@@ -600,12 +599,9 @@ class PlanParameters:
         return DEFAULT_SHARE if self._lacks_goal("sections") else self.share
 
     @property
-    def wanted_gain_db(self) -> float | None:
-        """What another battery has to bring, dB: `DEFAULT_GAIN_DB` where views are chosen for the model's pictures.
-
-        None as for `wanted_share`.
-        """
-        return DEFAULT_GAIN_DB if self._lacks_goal("image-error") else self.least_gain_db
+    def is_as_many_as_sections(self) -> bool:
+        """Whether views are chosen for the model's pictures, as many as would cover `DEFAULT_SHARE` of the sections."""
+        return self._lacks_goal("image-error")
 
     @property
     def is_for_least_error(self) -> bool:

@@ -317,7 +317,10 @@ def plan_flight(
     choosing = TimeLimit(choosing_s if choosing_s > LEAST_CHOOSING_S else 0.0, also=stop)
     problem = prepared.problem
     judged = cache(partial(image_error_model, problem, site_model, request.greedy.surroundings, request.seed, photos))
-    if request.wanted_gain_db is not None:
+    if request.is_as_many_as_sections:
+        enough_s = TimeLimit(COUNTING_SHARE * choosing.remaining_s(), also=stop)
+        request = replace(request, n_views=_n_for_sections(problem, request, chosen_profile, enough_s, monitor))
+    if request.least_gain_db is not None:
         n_batteries = _batteries_worth(problem, judged()[0], request, chosen_profile, choosing, monitor)
         request = replace(request, n_batteries=n_batteries, least_gain_db=None)
     chosen_for = judged()[0] if request.is_for_least_error and judged()[0].n_elements else None
@@ -476,6 +479,23 @@ def _choose(
     return optimiser(problem, _goal(request), seed=request.seed, stop=limit, trace=trace, monitor=monitor)
 
 
+COUNTING_SHARE, COUNTED_CANDIDATES = 0.3, 2000
+"""Of the time for choosing views, that may be spent on learning how many; and the candidates that tell."""
+
+
+def _n_for_sections(
+    problem: ViewProblem, request: PlanRequest, chosen_profile: Profile, stop: Stop, monitor: Monitor
+) -> int:
+    """How many views cover `DEFAULT_SHARE` of the sections, the locked ones among them."""
+    few = min(COUNTED_CANDIDATES, request.greedy.n_candidates)
+    quick = replace(request.greedy, n_candidates=few, improve=False, certify=False)
+    locked, spacing_m = locked_views(problem, request.locked), chosen_profile.aircraft.min_waypoint_spacing_m
+    optimiser = partial(greedy, parameters=quick, locked=locked, spacing_m=spacing_m)
+    goal = Goal(share=DEFAULT_SHARE)
+    found = optimiser(problem, goal, seed=request.seed, stop=stop, trace=Trace(), monitor=monitor)
+    return max(1, len(found.views.heading_rad))
+
+
 PROBED_VIEWS, PROBE_S, MOST_BATTERIES = 120, 1.0, 10
 """Views that are routed, for so long, to learn how many photos a battery lasts for, and the most batteries that a plan
 takes of its own accord."""
@@ -504,7 +524,7 @@ def _batteries_worth(
     for n_batteries in range(1, MOST_BATTERIES + 1):
         n_chosen = len(choose_for_least_error(state, n_each, monitor))
         now = expected_psnr_db(error.error_of(state.sums), error.near_share)
-        if before is not None and (n_chosen == 0 or now - before < (request.wanted_gain_db or 0.0)):
+        if before is not None and (n_chosen == 0 or now - before < (request.least_gain_db or 0.0)):
             return n_batteries - 1
         before = now
     return MOST_BATTERIES

@@ -14,7 +14,7 @@ from planning.aircraft.catalogue import profile
 from planning.base.effects import Decision
 from planning.base.progress import QualityPoint
 from planning.insight.sections import SectionState
-from planning.parameters import DEFAULT_GAIN_DB, DEFAULT_SHARE, Constraints, FlightRules, GreedyParameters
+from planning.parameters import DEFAULT_SHARE, Constraints, FlightRules, GreedyParameters
 from planning.plan import Viewpoint, usual_gsd_m
 from planning.request import PlanRequest
 
@@ -86,17 +86,21 @@ def test_the_wanted_pixel_is_that_of_camera_and_distance_until_one_is_typed(form
 
 
 def test_the_goal_that_is_offered_is_that_of_what_views_are_chosen_for(form):
-    from groundstation.gui.plan.plan_form import COVERAGE, GOOD_ENOUGH
+    from groundstation.gui.plan.plan_form import COVERAGE, GOOD_ENOUGH, MODEL
 
     goal, box = form._goal, form.box("greedy.objective")
     form.setValue(PlanRequest())
-    assert (goal.currentIndex(), form.value().wanted_gain_db, box.isEnabled()) == (GOOD_ENOUGH, DEFAULT_GAIN_DB, True)
+    assert (goal.currentIndex(), form.value().is_as_many_as_sections, box.isEnabled()) == (MODEL, True, True)
     form.setValue(PlanRequest(greedy=GreedyParameters(objective="sections")))
     assert (goal.currentIndex(), form.value().wanted_share) == (COVERAGE, DEFAULT_SHARE)
     form.setValue(PlanRequest())
     goal.setCurrentIndex(COVERAGE)
     assert form.value().share == DEFAULT_SHARE
     assert not box.isEnabled(), "a share is one of sections"
+    goal.setCurrentIndex(GOOD_ENOUGH)
+    assert form.value().least_gain_db == 0.5
+    goal.setCurrentIndex(MODEL)
+    assert form.value() == PlanRequest()
 
 
 def test_a_request_that_makes_no_sense_is_explained_and_not_announced(form):

@@ -31,8 +31,9 @@ if TYPE_CHECKING:
     from planning.request import PlanRequest
 
 EPILOG = """how much is wanted (one of):
-  --good-enough DB  batteries until another would make the model's pictures less than so much better (default: 0.5)
+  none              as many views as would cover 0.99 of the sections, placed for the model's pictures
   --views N         so many views
+  --good-enough DB  batteries until another would make the model's pictures less than so much better
   --batteries N     as much as possible within so many sorties
   --coverage SHARE  so much of what can be covered, by the paper's sections, with as few views as possible
 

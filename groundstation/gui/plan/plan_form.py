@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QCheckBox, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from groundstation.gui.application.translate import translated
@@ -19,7 +19,6 @@ from planning.aircraft.catalogue import Profile, profile, profiles
 from planning.base.errors import GroundStationError
 from planning.base.parameters import declared, with_values
 from planning.parameters import (
-    DEFAULT_GAIN_DB,
     DEFAULT_SHARE,
     DEFAULT_VIEWS,
     CameraSettings,
@@ -93,13 +92,13 @@ def _text(found: Profile) -> str:
     return " / ".join(dict.fromkeys([found.aircraft.name, found.camera.name]))
 
 
-COVERAGE, VIEWS, BATTERIES, GOOD_ENOUGH = range(4)
+MODEL, VIEWS, BATTERIES, GOOD_ENOUGH, COVERAGE = range(5)
 
 GOALS = {COVERAGE: "share", VIEWS: "n_views", BATTERIES: "n_batteries", GOOD_ENOUGH: "least_gain_db"}
-"""What each goal is the value of."""
+"""What each goal is the value of; a model as good as it gets, with as many photos as are usual, is that of none."""
 
-USUAL = {"share": DEFAULT_SHARE, "n_views": DEFAULT_VIEWS, "n_batteries": 1, "least_gain_db": DEFAULT_GAIN_DB}
-"""Offered for each."""
+USUAL = {"share": DEFAULT_SHARE, "n_views": DEFAULT_VIEWS, "n_batteries": 1, "least_gain_db": 0.5}
+"""Offered for each; half a decibel is what eyes begin to see."""
 
 OWN = ("profile_id", "method", "constraints.wanted_gsd_mm")
 """Parameters whose boxes depend on more than themselves."""
@@ -127,7 +126,7 @@ OFFERED_RANGE = 3.0
 
 def _usual_goal(objective: Objective) -> int:
     """What greedy is planned for where it is told no goal."""
-    return COVERAGE if objective == "sections" else GOOD_ENOUGH
+    return COVERAGE if objective == "sections" else MODEL
 
 
 class PlanForm(QWidget):
@@ -179,8 +178,13 @@ class PlanForm(QWidget):
         self.aircraft = AircraftBox()
         self.aircraft.setToolTip(tip_of(known["profile_id"].parameter))
         self._goal = ChoiceBox()
-        goals = self.tr("target coverage"), self.tr("number of views"), self.tr("batteries at hand")
-        self._goal.addItems([*goals, self.tr("a model that is good enough")])
+        goals = self.tr("the model (recommended)"), self.tr("number of views"), self.tr("batteries at hand")
+        self._goal.addItems([*goals, self.tr("a model that is good enough"), self.tr("target coverage")])
+        self._goal.setItemData(
+            MODEL,
+            self.tr("As many photos as would cover nearly all sections, placed where the model gains most."),
+            Qt.ItemDataRole.ToolTipRole,
+        )
         self._is_gsd_limited = QCheckBox(self.tr("Limit the GSD"))
         self._gsd = QuantityBox(sampling_unit, *COARSEST_GSD_M, 0.5)
         self._sharp = ParameterRow(known["constraints.wanted_gsd_mm"])
@@ -284,7 +288,7 @@ class PlanForm(QWidget):
         has_goal = any(getattr(before, name) is not None for name in GOALS.values())
         # What was asked for without a goal is still so while the one that is offered stands.
         is_usual = goal == _usual_goal(values["greedy", "objective"])
-        is_offered = is_usual and not has_goal and values[GOALS[goal],] == USUAL[GOALS[goal]]
+        is_offered = is_usual and not has_goal and values["share",] == DEFAULT_SHARE
         for number, name in GOALS.items():
             if number != goal or is_offered:
                 values[name,] = None

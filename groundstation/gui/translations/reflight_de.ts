@@ -5552,12 +5552,20 @@ Blickrichtung: {3}</translation>
         <translation>Akkus</translation>
     </message>
     <message>
+        <source>the model (recommended)</source>
+        <translation>das Modell (empfohlen)</translation>
+    </message>
+    <message>
         <source>target coverage</source>
         <translation>Zielabdeckung</translation>
     </message>
     <message>
         <source>a model that is good enough</source>
         <translation>ein Modell, das gut genug ist</translation>
+    </message>
+    <message>
+        <source>As many photos as would cover nearly all sections, placed where the model gains most.</source>
+        <translation>So viele Fotos, wie fast alle Abschnitte abdecken würden, dort aufgenommen, wo das Modell am meisten gewinnt.</translation>
     </message>
     <message>
         <source>Limit the GSD</source>

@@ -217,7 +217,7 @@ def _shortfalls(request: PlanRequest, planned: Planned) -> Iterator[Finding]:
 
 def _not_good_enough(request: PlanRequest, planned: Planned, is_late: bool) -> Iterator[Finding]:
     """Where a plan that was to stop at a gain could gain more: batteries are decided on before their routes are."""
-    worth, least_db = planned.plan.worth, request.wanted_gain_db
+    worth, least_db = planned.plan.worth, request.least_gain_db
     if worth is None or least_db is None or round(worth.gain_db, 1) <= round(least_db, 1):
         return
     n_batteries = len(worth.batteries)

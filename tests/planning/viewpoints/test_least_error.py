@@ -19,7 +19,7 @@ from planning.base.progress import QUIET
 from planning.coverage.image_error import FAR_M, ImageErrorModel, Term, _looks, decibels
 from planning.coverage.mirrored_rays import MirroredRays, Surroundings, pane_reflectance
 from planning.coverage.sections import panel_frames
-from planning.parameters import DEFAULT_GAIN_DB, DEFAULT_SHARE, Constraints, GreedyParameters
+from planning.parameters import DEFAULT_SHARE, Constraints, GreedyParameters
 from planning.plan import ViewpointArrays, plan_of, plan_to_json
 from planning.planner import plan_flight
 from planning.request import PlanRequest
@@ -449,7 +449,7 @@ def test_good_enough_takes_fewer_batteries_the_more_each_has_to_bring():
     request = PlanRequest(greedy=GreedyParameters(n_candidates=300, certify=False), time_budget_s=3.0)
     sorties = [
         len(plan_flight(prepared().site_model, replace(request, least_gain_db=gain), prepared=prepared()).plan.sorties)
-        for gain in (50.0, None, 0.05)
+        for gain in (50.0, 0.05)
     ]
     assert sorties[0] == 1
     assert sorties == sorted(sorties)
@@ -457,12 +457,22 @@ def test_good_enough_takes_fewer_batteries_the_more_each_has_to_bring():
 
 def test_without_a_goal_the_objective_says_when_it_is_enough():
     model, paper = PlanRequest(), PlanRequest(greedy=GreedyParameters(objective="sections"))
-    assert (model.wanted_gain_db, model.wanted_share, model.is_for_least_error) == (DEFAULT_GAIN_DB, None, True)
-    assert (paper.wanted_gain_db, paper.wanted_share, paper.is_for_least_error) == (None, DEFAULT_SHARE, False)
-    assert PlanRequest(share=0.5).wanted_gain_db is None
+    assert (model.is_as_many_as_sections, model.wanted_share, model.is_for_least_error) == (True, None, True)
+    assert (paper.is_as_many_as_sections, paper.wanted_share, paper.is_for_least_error) == (False, DEFAULT_SHARE, False)
     assert not PlanRequest(share=0.5).is_for_least_error
     for other in (replace(model, n_views=9), replace(model, n_batteries=1), replace(model, method="orbit")):
-        assert (other.wanted_gain_db, other.wanted_share) == (None, None)
+        assert (other.is_as_many_as_sections, other.wanted_share) == (False, None)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["single-panel", "roof"])
+def test_without_a_goal_there_are_about_as_many_views_as_sections_need_and_the_model_gains_by_them(name):
+    few = GreedyParameters(n_candidates=1000, certify=False)
+    model = plan_flight(SCENES[name](), PlanRequest(greedy=few, time_budget_s=20.0)).plan
+    paper = plan_flight(SCENES[name](), PlanRequest(greedy=replace(few, objective="sections"), time_budget_s=20.0)).plan
+    assert 0.7 * len(paper.viewpoints) <= len(model.viewpoints) <= 1.5 * len(paper.viewpoints)
+    assert paper.coverage.covered >= model.coverage.covered
+    assert model.worth.batteries[-1].psnr_db > paper.worth.batteries[-1].psnr_db
 
 
 @pytest.mark.parametrize("name", ["single-panel", pytest.param("court", marks=pytest.mark.slow)])
