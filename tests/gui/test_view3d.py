@@ -745,6 +745,8 @@ def test_surroundings_are_drawn_with_their_pictures_only_while_their_layer_is_sh
     view.surroundingsWanted.connect(wanted.append)
     model = office()
     view.set_site(model)
+    assert not wanted, "nobody looks at them where a processor draws"
+    view.set_layer_visible(Layer.SURROUNDINGS, True)
     assert wanted == [model]
     view.set_layer_visible(Layer.SURROUNDINGS, False)
     before = picture(application, view)
@@ -824,6 +826,7 @@ def test_textured_layers_are_drawn_in_motion_only_where_frames_were_measured_to_
     red = np.array([[220, 0, 0]], np.uint8)
     triangle = np.array([[(-15.0, -5.0, 0.0), (15.0, -5.0, 0.0), (0.0, -5.0, 40.0)]])
     view.set_surfaces([Surface(Part.SURROUNDINGS, triangle, red)])
+    view.set_layer_visible(Layer.SURROUNDINGS, True)
     picture(application, view)
     view._begin(True)
     canvas = view.canvas()

@@ -298,7 +298,7 @@ class ScenePicture(QWidget):
         self._panel_values: tuple[ColourScale, Array] | None = None
         self._selection: tuple[Item, ...] = ()
         self._hover: Item | None = None
-        self._hidden: frozenset[Layer] = frozenset({Layer.FRUSTA})
+        self._hidden: frozenset[Layer] = frozenset({Layer.FRUSTA, Layer.SURROUNDINGS})
         self._textured_frame_s: float | None = None
         self._is_moving, self._is_watched, self._is_software = False, False, False
         self._live_labels: tuple[Label, ...] = ()
@@ -375,8 +375,13 @@ class ScenePicture(QWidget):
             self.photosWanted.emit()
 
     def _begin(self, is_software: bool) -> None:
-        """A graphics card draws textured layers always; for a processor their frames are measured here."""
+        """A graphics card draws textured layers always, surroundings from the beginning.
+
+        A processor's frames with them are measured; its first one with surroundings held the window for 0.4 s.
+        """
         self._is_software = is_software
+        if not is_software:
+            self.set_layer_visible(Layer.SURROUNDINGS, True)
         self._time_anew()
 
     def _time_anew(self) -> None:
