@@ -318,8 +318,7 @@ def plan_flight(
     problem = prepared.problem
     judged = cache(partial(image_error_model, problem, site_model, request.greedy.surroundings, request.seed, photos))
     if request.is_as_many_as_sections:
-        enough_s = TimeLimit(COUNTING_SHARE * choosing.remaining_s(), also=stop)
-        request = replace(request, n_views=_n_for_sections(problem, request, chosen_profile, enough_s, monitor))
+        request = replace(request, n_views=_n_for_sections(problem, request, chosen_profile, choosing, monitor))
     if request.least_gain_db is not None:
         n_batteries = _batteries_worth(problem, judged()[0], request, chosen_profile, choosing, monitor)
         request = replace(request, n_batteries=n_batteries, least_gain_db=None)
@@ -484,9 +483,10 @@ COUNTING_SHARE, COUNTED_CANDIDATES = 0.3, 2000
 
 
 def _n_for_sections(
-    problem: ViewProblem, request: PlanRequest, chosen_profile: Profile, stop: Stop, monitor: Monitor
+    problem: ViewProblem, request: PlanRequest, chosen_profile: Profile, choosing: TimeLimit, monitor: Monitor
 ) -> int:
     """How many views cover `DEFAULT_SHARE` of the sections, the locked ones among them."""
+    stop = TimeLimit(COUNTING_SHARE * choosing.remaining_s(), also=choosing)
     few = min(COUNTED_CANDIDATES, request.greedy.n_candidates)
     quick = replace(request.greedy, n_candidates=few, improve=False, certify=False)
     locked, spacing_m = locked_views(problem, request.locked), chosen_profile.aircraft.min_waypoint_spacing_m
