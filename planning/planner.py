@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
@@ -317,11 +317,7 @@ def plan_flight(
     choosing = TimeLimit(choosing_s if choosing_s > LEAST_CHOOSING_S else 0.0, also=stop)
     problem = prepared.problem
     judged = cache(partial(image_error_model, problem, site_model, request.greedy.surroundings, request.seed, photos))
-    if request.is_as_many_as_sections:
-        request = replace(request, n_views=_n_for_sections(problem, request, chosen_profile, choosing, monitor))
-    if request.least_gain_db is not None:
-        n_batteries = _batteries_worth(problem, judged()[0], request, chosen_profile, choosing, monitor)
-        request = replace(request, n_batteries=n_batteries, least_gain_db=None)
+    request = _with_numbers(problem, lambda: judged()[0], request, chosen_profile, choosing, monitor)
     chosen_for = judged()[0] if request.is_for_least_error and judged()[0].n_elements else None
     found = _choose(problem, request, chosen_profile, chosen_for, choosing, trace, monitor)
     n_locked = len(request.locked)
@@ -476,6 +472,23 @@ def _choose(
         )
     optimiser = _optimiser(request, locked, chosen_profile.aircraft.min_waypoint_spacing_m, error)
     return optimiser(problem, _goal(request), seed=request.seed, stop=limit, trace=trace, monitor=monitor)
+
+
+def _with_numbers(
+    problem: ViewProblem,
+    judged: Callable[[], ImageErrorModel],
+    request: PlanRequest,
+    chosen_profile: Profile,
+    choosing: TimeLimit,
+    monitor: Monitor,
+) -> PlanRequest:
+    """A request whose goal is a number of views or batteries, where those are to be found out."""
+    if request.is_as_many_as_sections:
+        return replace(request, n_views=_n_for_sections(problem, request, chosen_profile, choosing, monitor))
+    if request.least_gain_db is None:
+        return request
+    n_batteries = _batteries_worth(problem, judged(), request, chosen_profile, choosing, monitor)
+    return replace(request, n_batteries=n_batteries, least_gain_db=None)
 
 
 COUNTING_SHARE, COUNTED_CANDIDATES = 0.3, 2000

@@ -10,7 +10,7 @@ from missions.flight.logs.raw import NEARBY_S, PhotoClock
 from missions.flight.record import TakenPhoto
 from missions.mavlink.autopilots import Autopilot
 from missions.mavlink.messages import Address
-from planning.geo.frames import Vec3
+from planning.geo.frames import Angles, Vec3
 
 Value = TypeVar("Value")
 
@@ -53,15 +53,6 @@ class Motion:
     position_enu_m: Vec3
     velocity_enu_m_s: Vec3
     height_above_home_m: float
-
-
-@dataclass(frozen=True, slots=True)
-class Angles:
-    """Of the airframe or of the camera: heading clockwise from north in (-pi, pi], pitch nose or lens up."""
-
-    heading_rad: float
-    pitch_rad: float
-    roll_rad: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -49,10 +50,41 @@ def read_photo_flights(
     return LogFlights(flights.records, (*found.findings, *flights.findings))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class FlownPhotos:
+    """Photos with the places and times that they say.
+
+    Parameters
+    ----------
+    points_enu_m, times_s
+        Shapes (n, 3) and (n,); times of one clock for all.
+    sorties
+        Numbers of photos by aircraft and sortie, in the order of flight.
+    """
+
+    photos: tuple[PhotoMetadata, ...]
+    points_enu_m: Floats
+    times_s: Floats
+    sorties: tuple[list[int], ...]
+    findings: tuple[Finding, ...]
+
+    def flights(self) -> LogFlights:
+        """A record of each sortie."""
+        records = (_record(self.photos, self.times_s, self.points_enu_m, sortie) for sortie in self.sorties)
+        return LogFlights(tuple(records), self.findings)
+
+
 def photo_flights(
     photos: Sequence[PhotoMetadata], site: Site, label: str, heights: PhotoHeights = "auto"
 ) -> LogFlights:
-    """Flight records of photos.
+    """Flight records of photos, as `flown_photos` has them."""
+    return flown_photos(photos, site, label, heights).flights()
+
+
+def flown_photos(
+    photos: Sequence[PhotoMetadata], site: Site, label: str, heights: PhotoHeights = "auto"
+) -> FlownPhotos:
+    """Photos that say where and when they were taken, shared out among sorties.
 
     Parameters
     ----------
@@ -72,8 +104,7 @@ def photo_flights(
     times_s = _times_s(here)
     places = photo_places(here, site, heights, label)
     findings += [*elsewhere, *places.findings, *receiver_findings(here)]
-    records = tuple(_record(here, times_s, places.points_enu_m, group) for group in _sorties(here, times_s))
-    return LogFlights(records, tuple(findings))
+    return FlownPhotos(tuple(here), places.points_enu_m, times_s, tuple(_sorties(here, times_s)), tuple(findings))
 
 
 def _usable(photos: Sequence[PhotoMetadata], label: str, findings: list[Finding]) -> list[PhotoMetadata]:

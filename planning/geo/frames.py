@@ -23,6 +23,15 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
+class Angles:
+    """Of the airframe or of the camera: heading clockwise from north in (-pi, pi], pitch nose or lens up."""
+
+    heading_rad: float
+    pitch_rad: float
+    roll_rad: float
+
+
+@dataclass(frozen=True, slots=True)
 class Origin:
     """Where the local frame's origin lies: WGS 84 geodetic, height above the ellipsoid."""
 

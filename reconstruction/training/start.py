@@ -429,8 +429,8 @@ def start_model(
     if interrupted is not None:
         splats = splats_from_tensors(interrupted.splats, str(checkpoint))
     elif splats_path is not None:
-        splats = splats_of_file(splats_path, source, learned, origin, config.memory_bytes, monitor)
-        splats = with_primitive(splats, config.trained_by.primitive)
+        given = splats_of_file(splats_path, source, learned, origin, config.memory_bytes, monitor)
+        splats = with_primitive(given, config.trained_by.primitive)
     else:
         splats, on_points = _placed_splats(source, learned, scene, origin, config, monitor)
         decisions += on_points
@@ -439,8 +439,7 @@ def start_model(
         look = _Look(show, config, watch, shown_views(source, held_out, origin, config.memory_bytes))
         look(_joined(source, learned, splats, None, None, origin, config))
     light: TrainedReflections | None = None
-    shader: Shader | None = None
-    is_told = False
+    shader, is_told = None, False
     if interrupted is None and config.trained_by.knows_panels:
         white, decision = white_of(source, learned, config.overexposed)
         config = with_white(config, white)
@@ -450,10 +449,8 @@ def start_model(
         shader = shader_of(config, Surroundings(triangles))
         splats = converted_for_method(splats, config, shader)
     else:
-        first = _learned_light(
-            source, learned, config, splats, monitor, watch, checkpoint, interrupted, decisions, look
-        )
-        light, splats, decisions, is_told = first.light, first.splats, first.decisions, first.is_in_splats
+        done = _learned_light(source, learned, config, splats, monitor, watch, checkpoint, interrupted, decisions, look)
+        light, splats, decisions, is_told = done.light, done.splats, done.decisions, done.is_in_splats
     moves = learned_moves(None if light is None else light.panels.light, len(learned))
     cameras = np.array([photo.pose.position_enu_m for photo in moved(learned, moves)])
     if light is not None and not is_told:

@@ -25,9 +25,9 @@ from groundstation.services.fly.events import LiveView, PhotoCounted, ViewState
 from groundstation.services.fly.readouts import flies_mission
 from groundstation.services.map.web_mercator import world_from_geodetic
 from groundstation.services.units import UnitSystem, length_unit
-from groundstation.vehicle.state import Angles, Motion, VehicleState
+from groundstation.vehicle.state import Motion, VehicleState
 from planning.geo.enu import geodetic_from_enu
-from planning.geo.frames import Origin, Vec3
+from planning.geo.frames import Angles, Origin, Vec3
 from planning.plan import Camera, Viewpoint, ViewpointArrays
 
 # A time line of the sortie's photos: planned, next, taken with the error of its place, or missing.

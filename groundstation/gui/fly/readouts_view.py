@@ -30,8 +30,8 @@ from groundstation.gui.widgets.theme import colours
 from groundstation.services.fly.events import FlightEnded, LinkState, LiveView, PhotoCounted, Readouts, ViewState
 from groundstation.services.units import UnitSystem, length_unit, minutes_text, per_cent, speed_unit
 from groundstation.vehicle.preflight import fix_name
-from groundstation.vehicle.state import Angles
 from missions.flight.outcome import FlightReport, Reason, ViewOutcome
+from planning.geo.frames import Angles
 
 UNKNOWN = "-"
 

@@ -23,7 +23,6 @@ from planning.parameters import (
     DEFAULT_VIEWS,
     CameraSettings,
     Constraints,
-    Objective,
     PlanParameters,
 )
 from planning.plan import usual_gsd_m
@@ -124,11 +123,6 @@ OFFERED_RANGE = 3.0
 """Where no pixel size is asked for, the one at so many safety distances is offered."""
 
 
-def _usual_goal(objective: Objective) -> int:
-    """What greedy is planned for where it is told no goal."""
-    return COVERAGE if objective == "sections" else MODEL
-
-
 class PlanForm(QWidget):
     """`value()`, `setValue()` and `valueChanged` of a plan request; what it does not show it keeps.
 
@@ -227,7 +221,8 @@ class PlanForm(QWidget):
         wrong = self._show_aircraft(request)
         self._method.setValue(request.method)
         asked = [goal for goal, name in GOALS.items() if getattr(request, name) is not None]
-        self._goal.setCurrentIndex(asked[0] if asked else _usual_goal(request.greedy.objective))
+        usual = COVERAGE if request.greedy.objective == "sections" else MODEL
+        self._goal.setCurrentIndex(asked[0] if asked else usual)
         for name, row in self.rows.items():
             value = row.declared.value_in(request)
             row.setValue(USUAL.get(name) if value is None else value)
@@ -287,8 +282,8 @@ class PlanForm(QWidget):
         values = {row.declared.path: row.value() for row in self.rows.values()}
         has_goal = any(getattr(before, name) is not None for name in GOALS.values())
         # What was asked for without a goal is still so while the one that is offered stands.
-        is_usual = goal == _usual_goal(values["greedy", "objective"])
-        is_offered = is_usual and not has_goal and values["share",] == DEFAULT_SHARE
+        is_for_sections = goal == COVERAGE and values["greedy", "objective"] == "sections"
+        is_offered = is_for_sections and not has_goal and values["share",] == DEFAULT_SHARE
         for number, name in GOALS.items():
             if number != goal or is_offered:
                 values[name,] = None

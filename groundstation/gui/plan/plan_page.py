@@ -635,14 +635,17 @@ class PlanPage(GradualTab):
 
     def _show_worth(self, active: ActivePlan | None, worth: FlightWorth | None) -> None:
         """Show what a plan is worth; where it does not say, that is measured once it is left alone for a while."""
-        self._worth = active, worth
-        self.worth.set_lines(self._worth_lines(worth))
+        self._tell_worth(active, worth)
         if self._measuring is not None:
             self._context.cancel(self._measuring, quietly=True)
             self._measuring = None
         self._untouched.stop()
         if active is not None and worth is None:
             self._untouched.start()
+
+    def _tell_worth(self, active: ActivePlan | None, worth: FlightWorth | None) -> None:
+        self._worth = active, worth
+        self.worth.set_lines(self._worth_lines(worth))
 
     def _measure_worth(self) -> None:
         active, _ = self._worth
@@ -655,8 +658,7 @@ class PlanPage(GradualTab):
         def done(found: FlightWorth | None) -> None:
             self._measuring = None
             if active is self.controller.active:
-                self._worth = active, found
-                self.worth.set_lines(self._worth_lines(found))
+                self._tell_worth(active, found)
                 self._show_result(active)
 
         self._measuring = self._context.start(

@@ -12,8 +12,7 @@ from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
 from groundstation.gui.view3d.drawables import ON_TOP, Drawable, joined, outlines
 from groundstation.gui.view3d.paint import flat, shaded
 from groundstation.gui.widgets.theme import Colours
-from groundstation.vehicle.state import Angles
-from planning.geo.frames import camera_axes
+from planning.geo.frames import Angles, camera_axes
 
 Array = NDArray[np.float64]
 

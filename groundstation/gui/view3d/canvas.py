@@ -104,23 +104,25 @@ class _Drawn:
         self.actor.SetPosition(*(self.nearer * eye_enu_m))
 
 
+N_TIMED = 5
+"""Frames of a view that moves that are measured, behind the first."""
+
+
 class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
     """Drawables by name, shown or hidden, seen through a pinhole.
 
     Multi-sampling, lamps and order-independent transparency are off: each costs a processor that draws in place of a
     graphics card more than the rest of the picture.
 
-    Attributes
-    ----------
-    frame_times_s
-        Grows by whole frames of a view that moves, where a processor draws, and somebody put a list here.
-
     Signals
     -------
+    framesTimed()
+        `moving_frame_s` is known; from within painting.
     started(bool)
         It can draw; whether a processor does it in place of a graphics card.
     """
 
+    framesTimed = Signal()  # noqa: N815  (Qt's own way of naming)
     started = Signal(bool)
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -142,8 +144,22 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
         # What is drawn for the first time is compiled for it, 70 ms in all: first frames have few layers.
         self._n_layers = 0
         self.n_painted = 0
-        self.frame_times_s: list[float] | None = None
+        self._frame_times_s: list[float] | None = None
+        self.moving_frame_s: float | None = None
+        """How long a whole frame of a view that moves takes; None until that is measured (`time_frames`)."""
         self.is_open = True
+
+    def time_frames(self, *, is_wanted: bool = True) -> None:
+        """Measure anew how long frames of a moving view take, or no longer."""
+        self.moving_frame_s, self._frame_times_s = None, [] if is_wanted else None
+
+    def _note_frame(self, took_s: float) -> None:
+        if self._frame_times_s is None:
+            return
+        self._frame_times_s.append(took_s)
+        if len(self._frame_times_s) > N_TIMED:  # the first one compiles
+            self.moving_frame_s, self._frame_times_s = float(np.median(self._frame_times_s[1:])), None
+            self.framesTimed.emit()
 
     def close(self) -> None:
         """Free the OpenGL context. What comes after, such as the end of a job, is heard and draws nothing."""
@@ -272,12 +288,11 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
             self._is_detail_due = False
             self._show_detail()
         is_whole = self._n_layers >= len(self._drawn)
-        is_timed = self.frame_times_s is not None and is_whole and not self.renderer.GetUseFXAA()
         started_s = perf_counter()
         super().paintGL()
-        if is_timed and self.frame_times_s is not None:
+        if self._frame_times_s is not None and is_whole and not self.renderer.GetUseFXAA():
             self.ren_win.WaitForCompletion()
-            self.frame_times_s.append(perf_counter() - started_s)
+            self._note_frame(perf_counter() - started_s)
         if self._n_layers < len(self._drawn) and self.is_open:
             self._n_layers = 2 * self._n_layers + 1
             QTimer.singleShot(0, self, self._detail_changed)

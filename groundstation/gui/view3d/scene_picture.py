@@ -6,7 +6,6 @@ loop, and not while the picture is hidden.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
@@ -14,7 +13,7 @@ from enum import Enum, auto
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QEvent, QMargins, Signal
+from PySide6.QtCore import QEvent, QMargins, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
@@ -58,9 +57,8 @@ from groundstation.gui.widgets.theme import colours
 from groundstation.services.project.document import Item, ItemKind
 from groundstation.services.scenes.surfaces import Part, Surface
 from groundstation.services.units import UnitSystem
-from groundstation.vehicle.state import Angles
 from planning.coverage.sections import PanelFrames, SectionGrid
-from planning.geo.frames import camera_axes
+from planning.geo.frames import Angles, camera_axes
 from planning.plan import Camera, Plan, ViewpointArrays
 from planning.site.records import SiteModel
 
@@ -229,9 +227,6 @@ TEXTURED = (Layer.SURROUNDINGS, Layer.PHOTOS)
 SMOOTH_FRAME_S = 1.0 / 30.0
 """Up to so long a frame turning is smooth: textured layers are then drawn in motion, else while the view rests."""
 
-N_TIMED = 5
-"""Frames of a turn that are measured; the first still compiles."""
-
 ASIDE_DEG, ABOVE_DEG = 28.0, 22.0
 """Standard view: from the right and from above, so that depth can be seen."""
 
@@ -299,7 +294,6 @@ class ScenePicture(QWidget):
         self._selection: tuple[Item, ...] = ()
         self._hover: Item | None = None
         self._hidden: frozenset[Layer] = frozenset({Layer.FRUSTA, Layer.SURROUNDINGS})
-        self._textured_frame_s: float | None = None
         self._is_moving, self._is_watched, self._is_software = False, False, False
         self._live_labels: tuple[Label, ...] = ()
         self._surfaces: tuple[Surface, ...] = ()
@@ -323,6 +317,7 @@ class ScenePicture(QWidget):
         self._navigator.moved.connect(self.orbitChanged)
         self._navigator.rested.connect(self._come_to_rest)
         self._canvas.started.connect(self._begin)
+        self._canvas.framesTimed.connect(self._show_textured, Qt.ConnectionType.QueuedConnection)
         self._dress()
 
     def warm_up(self) -> None:
@@ -375,31 +370,21 @@ class ScenePicture(QWidget):
             self.photosWanted.emit()
 
     def _begin(self, is_software: bool) -> None:
-        """A graphics card draws textured layers always, surroundings from the beginning.
-
-        A processor's frames with them are measured; its first one with surroundings held the window for 0.4 s.
-        """
+        """Show surroundings at once where a graphics card draws; a processor's first frame with them takes 0.4 s."""
         self._is_software = is_software
         if not is_software:
             self.set_layer_visible(Layer.SURROUNDINGS, True)
         self._time_anew()
 
     def _time_anew(self) -> None:
-        self._textured_frame_s, self._canvas.frame_times_s = None, [] if self._is_software else None
+        self._canvas.time_frames(is_wanted=self._is_software)
         self._show_textured()
-
-    def textured_frame_s(self) -> float | None:
-        """How long a processor takes for a moving frame with textured layers; None for a graphics card or not known."""
-        return self._textured_frame_s
 
     def is_painted(self) -> bool:
         """Whether panels show values or coverage, which photos would hide."""
         return self._panel_values is not None or self._coverage.is_on
 
     def _set_moving(self, is_moving: bool) -> None:
-        times_s = self._canvas.frame_times_s
-        if times_s is not None and len(times_s) > N_TIMED:
-            self._textured_frame_s, self._canvas.frame_times_s = float(np.median(times_s[1:])), None
         self._is_moving = is_moving
         self._show_textured()
 
@@ -411,9 +396,9 @@ class ScenePicture(QWidget):
 
     def _show_textured(self) -> None:
         """Textured layers that keep the view from turning smoothly, or may in a flight, are drawn while it rests."""
-        unknown_s = math.inf if self._is_software and self._is_watched else 0.0
-        frame_s = unknown_s if self._textured_frame_s is None else self._textured_frame_s
-        is_late = frame_s > SMOOTH_FRAME_S and (self._is_moving or self._is_watched)
+        frame_s, unknown = self._canvas.moving_frame_s, self._is_software and self._is_watched
+        is_slow = unknown if frame_s is None else frame_s > SMOOTH_FRAME_S
+        is_late = is_slow and (self._is_moving or self._is_watched)
         for layer in TEXTURED:
             is_hidden = layer in self._hidden or (layer is Layer.PHOTOS and self.is_painted())
             self._canvas.set_shown(layer, not is_hidden and not is_late)
@@ -516,8 +501,10 @@ class ScenePicture(QWidget):
     def set_layer_visible(self, layer: Layer, is_visible: bool) -> None:
         """Show or hide a layer; what is hidden cannot be picked."""
         self._hidden = self._hidden - {layer} if is_visible else self._hidden | {layer}
-        self._canvas.set_shown(layer, is_visible)
-        self._show_textured()
+        if layer in TEXTURED:
+            self._time_anew()
+        else:
+            self._canvas.set_shown(layer, is_visible)
         if layer in (Layer.VIEWPOINTS, Layer.ROUTES):
             self._show_plan_layers()
         elif layer is Layer.FRUSTA:

@@ -267,6 +267,7 @@ class SceneView(ScenePicture):
         self._layers_button.setToolTip(self.tr("What is shown in the view, and how strongly, sortie by sortie"))
         self._layers_button.setCheckable(True)
         self._layers_button.toggled.connect(self._show_panel)
+        self._canvas.framesTimed.connect(self._list_anew, Qt.ConnectionType.QueuedConnection)
         self._gestures = Gestures(self._canvas)
         self._tools = ToolDriver(self._pointer, self)
         gestures, tools = self._gestures, self._tools
@@ -336,7 +337,7 @@ class SceneView(ScenePicture):
         """When a textured layer is drawn, and why."""
         if layer is Layer.PHOTOS and self.is_painted():
             return self.tr("not drawn: panels show values")
-        frame_s = self.textured_frame_s()
+        frame_s = self.canvas().moving_frame_s
         if layer not in TEXTURED or frame_s is None:
             return ""
         if frame_s > SMOOTH_FRAME_S:
@@ -344,12 +345,6 @@ class SceneView(ScenePicture):
         else:
             text = self.tr("drawn always: a frame takes {0} ms, turning smoothly allows {1} ms")
         return text.format(round(1e3 * frame_s), round(1e3 * SMOOTH_FRAME_S))
-
-    def _set_moving(self, is_moving: bool) -> None:
-        had_s = self.textured_frame_s()
-        super()._set_moving(is_moving)
-        if self.textured_frame_s() != had_s:
-            self._list_anew()
 
     def _layer_titles(self) -> dict[Layer, str]:
         titles: dict[Layer, str] = {}

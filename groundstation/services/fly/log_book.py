@@ -17,10 +17,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from groundstation.services.fly.events import FlightEnded
 from groundstation.services.settings import data_folder
-from missions.flight.photo_folder import INFRARED, SORTIE_GAP_S, photo_flights
+from missions.flight.photo_folder import FlownPhotos, flown_photos
 from missions.flight.record import FlightRecord
 from missions.flight.report import report_flight
 from missions.mission.model import GeoPoint
@@ -32,7 +33,6 @@ from planning.base.messages import plain, say
 from planning.base.progress import QUIET, Monitor
 from planning.geo.enu import geodetic_from_enu
 from planning.insight.sun_times import PAUSE_S
-from planning.photos.places import absolute_height_m, photo_places, photos_near
 from planning.photos.record import PhotoMetadata
 from planning.plan import Plan
 from planning.site.records import Site, SiteModel
@@ -222,45 +222,32 @@ def flight_of_photos(
 ) -> tuple[tuple[StatedSortie, ...], tuple[Finding, ...]]:
     """What the photos of a flight say of its sorties, and the findings of the report on it.
 
-    Photos belong to the sortie whose view was planned nearest to most of their group, groups being parted by
-    `SORTIE_GAP_S`. A sortie is taken to be at least as long as planned, its photos in its middle. Times are the
-    camera's; without its time zone in that of this computer.
+    Photos belong to the sortie whose view was planned nearest to most of their group (`FlownPhotos.sorties`). A sortie
+    is taken to be at least as long as planned, its photos in its middle. Times are the camera's; without its time zone
+    in that of this computer.
 
     Raises
     ------
     InputError
         No photo says where and when it was taken, or they belong to another site.
     """
-    found = photo_flights(photos, site_model.site, label)
-    report = report_flight(plan, site_model, found.records, monitor=monitor)
-    near, _ = photos_near([photo for photo in photos if _is_known(photo)], site_model.site, label)
-    return _sorties_of_photos(plan, site_model.site, near, label), report.findings
+    flown = flown_photos(photos, site_model.site, label)
+    report = report_flight(plan, site_model, flown.flights().records, monitor=monitor)
+    return _sorties_of_photos(plan, flown), report.findings
 
 
-def _is_known(photo: PhotoMetadata) -> bool:
-    return (
-        photo.image_source != INFRARED
-        and photo.lat_deg is not None
-        and (photo.taken_at is not None or photo.exposed_at is not None)
-        and (absolute_height_m(photo) is not None or photo.height_above_takeoff_m is not None)
-    )
-
-
-def _sorties_of_photos(plan: Plan, site: Site, photos: Sequence[PhotoMetadata], label: str) -> tuple[StatedSortie, ...]:
-    if not photos or not plan.viewpoints:
-        return ()
-    known = sorted(photos, key=_unix_s)
-    times_s = np.array([_unix_s(photo) for photo in known])
-    points = photo_places(known, site, "auto", label).points_enu_m
+def _sorties_of_photos(plan: Plan, flown: FlownPhotos) -> tuple[StatedSortie, ...]:
     of_view = {name: number for number, sortie in enumerate(plan.sorties, 1) for name in sortie.viewpoint_ids}
     views = [view for view in plan.viewpoints if view.id in of_view]
-    planned = np.array([view.position_enu_m for view in views])
-    nearest = [int(np.argmin(np.linalg.norm(planned - point, axis=1))) for point in points]
-    numbers = np.array([of_view[views[index].id] for index in nearest])
+    if not views:
+        return ()
+    planned = cKDTree(np.array([view.position_enu_m for view in views]))
+    nearest = np.asarray(planned.query(flown.points_enu_m)[1])
+    numbers = np.array([of_view[views[index].id] for index in nearest.tolist()])
     stated: list[StatedSortie] = []
-    for group in np.split(np.arange(len(known)), np.flatnonzero(np.diff(times_s) > SORTIE_GAP_S) + 1):
-        number = int(np.bincount(numbers[group]).argmax())
-        first_s, last_s, n = float(times_s[group[0]]), float(times_s[group[-1]]), len(group)
+    for group in flown.sorties:
+        number, n = int(np.bincount(numbers[group]).argmax()), len(group)
+        first_s, last_s = (_unix_s(flown.photos[index]) for index in (group[0], group[-1]))
         before = stated[-1] if stated else None
         if before and before.number == number and last_s - before.started_unix_s <= plan.aircraft.endurance_s:
             first_s, n = before.started_unix_s, n + before.n_photos

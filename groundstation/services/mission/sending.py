@@ -114,8 +114,6 @@ class PreparedSending:
     ----------
     replaced
         Files that are there and would be replaced.
-    is_ready_to_fly
-        Whether the plan breaks no rule of the pre-flight check; else the pilot has to say that it is sent.
     refusal
         What has to be put right first; empty where they can be sent.
     """
@@ -123,8 +121,12 @@ class PreparedSending:
     targets: tuple[Target, ...] = ()
     findings: tuple[Finding, ...] = ()
     replaced: tuple[Path, ...] = ()
-    is_ready_to_fly: bool = True
     refusal: str = ""
+
+    @property
+    def is_ready_to_fly(self) -> bool:
+        """Whether the plan breaks no rule of the pre-flight check; else the pilot has to say that it is sent."""
+        return not_ready(self.findings) is None
 
 
 def payload_of_plan(plan: Plan, site_model: SiteModel, name: str, options: ExportOptions = DEFAULT_OPTIONS) -> Payload:
@@ -266,7 +268,7 @@ def prepare_sending(payload: Payload, storage: Storage, route_ids: Sequence[str]
     """What sending would do; what the user can put right is part of the result, and nothing is raised for it."""
     try:
         targets, findings = targets_of(payload, storage, route_ids, may_replace=True, despite_errors=True)
-        return PreparedSending(targets, findings, replaced_files(targets), not_ready(findings) is None)
+        return PreparedSending(targets, findings, replaced_files(targets))
     except GroundStationError as error:
         return PreparedSending(refusal=str(error))
 

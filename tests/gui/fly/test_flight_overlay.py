@@ -19,10 +19,11 @@ from groundstation.services.fly.events import LinkState, LiveView, Readouts, Vie
 from groundstation.services.units import UnitSystem
 from groundstation.vehicle.preflight import OnBoard
 from groundstation.vehicle.sortie.run_records import Phase
-from groundstation.vehicle.state import Angles, Timed, VehicleState
+from groundstation.vehicle.state import Timed, VehicleState
 from groundstation.vehicle.watch import FlightWarning
 from planning.base.findings import Severity
 from planning.base.messages import say
+from planning.geo.frames import Angles
 
 SHOWN = Readouts(
     height_m=20.0,

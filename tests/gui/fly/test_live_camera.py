@@ -13,7 +13,8 @@ from groundstation.gui.fly.flight_settings_page import SettingsPage
 from groundstation.gui.view3d.canvas import image_array
 from groundstation.services.fly.options import FlightSettings
 from groundstation.services.fly.video_offer import OfferedVideo, VideoFinder
-from groundstation.vehicle.state import Angles, Motion, Timed, VehicleState
+from groundstation.vehicle.state import Motion, Timed, VehicleState
+from planning.geo.frames import Angles
 from tests.gui.driving import click_on, turn_until, type_into
 from tests.gui.fly.test_fly_page import connect, controller, page
 from tests.services.fly.test_video import film, is_film, sent_by_udp

@@ -8,8 +8,9 @@ import pytest
 
 from groundstation.services.fly.readouts import readouts
 from groundstation.services.fly.to_go import SortieTimes, to_go
-from groundstation.vehicle.state import Angles, Landed, Motion, Timed, VehicleState
+from groundstation.vehicle.state import Landed, Motion, Timed, VehicleState
 from missions.mavlink.autopilots import Autopilot
+from planning.geo.frames import Angles
 from planning.insight.flight_profile import sortie_profile
 from tests.services.live_cases import sortie
 
