@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from groundstation.vehicle.commands import sensor_problems
 from groundstation.vehicle.state import (
     MAX_TEXTS,
-    Angles,
     BatteryLevel,
     EstimatorHealth,
     GnssFix,
@@ -32,7 +31,7 @@ from missions.mavlink import messages
 from missions.mavlink.autopilots import Autopilot, facts, mode_name
 from planning.base.messages import say
 from planning.geo.enu import enu_from_geodetic, geodetic_from_enu
-from planning.geo.frames import Origin, Vec3, wrap_heading_deg
+from planning.geo.frames import Angles, Origin, Vec3, wrap_heading_deg
 
 MAV_COMP_ID_AUTOPILOT1 = 1
 MAV_TYPE_GCS = 6
