@@ -13,7 +13,7 @@ import numpy as np
 from groundstation.services.worth import FlightResult, WorthRequest, worth_tradeoff
 from tests.benchmarks.harness import Benchmark, Context, Row
 
-COUNTS = {"planar": (50, 100, 200), "curved": (50, 100, 200), "court": (50, 100), "planar-far": (100,)}
+COUNTS = {"planar": (50, 100, 200), "curved": (50, 100, 200), "court": (50, 100, 200), "planar-far": (100,)}
 """Photos of the flights over each scene."""
 
 FAR = ("planar-far",)
@@ -32,6 +32,8 @@ FURTHER = {
     "far": ("curved-far", {}),
     "Reflection MLP": ("planar", {"lights": ("mlp",), "n_seeds": N_SEEDS}),
     "joint splats": ("planar", {"lights": ("splats",), "n_seeds": N_SEEDS}),
+    "joint splats, curved": ("curved", {"lights": ("splats",), "n_seeds": N_SEEDS}),
+    "joint splats, court": ("court", {"lights": ("splats",), "n_seeds": N_SEEDS}),
 }
 """What else models and flights may be, with one seed and so many photos: the scene, and what differs there. With
 512 px a photo takes 4.5 s of a core, and a model some minutes."""
