@@ -853,6 +853,20 @@ def test_textured_layers_are_drawn_in_motion_only_where_frames_were_measured_to_
     view.set_watched(False)
 
 
+def test_edges_are_smoothed_at_rest_and_never_while_a_flight_moves_in_the_view(application, view):
+    view.set_site(office())
+    canvas = view.canvas()
+    canvas.smooths_at_rest = True
+    turn_until(application, lambda: canvas._is_software and canvas.renderer.GetUseFXAA())
+    view.set_watched(True)
+    assert not canvas.renderer.GetUseFXAA()
+    view.turn_by_hand(3.0, 0.0)
+    turn_until(application, lambda: not view._is_moving)
+    assert not canvas.renderer.GetUseFXAA(), "it rests for no moment"
+    view.set_watched(False)
+    turn_until(application, canvas.renderer.GetUseFXAA)
+
+
 def test_frames_of_a_turn_are_measured_where_a_processor_draws(application, view):
     view.set_site(office())
     picture(application, view)
@@ -872,7 +886,7 @@ def test_the_aircraft_of_the_slider_is_the_one_of_a_flight_and_turns_with_its_he
     for heading in (0.0, 1.0):
         view.set_flown(scene_picture.FlownPose(0, place, heading, -0.2))
         drawn = view._flown_drawables()
-        assert len(drawn) > 5, "pyramid, propellers, arms, body, nose"
+        assert len(drawn) == 5, "pyramid, propellers, arms and body with the nose, rims, sight of the camera"
         found.append(np.concatenate([each.points_enu_m for each in drawn[1:]]))
     assert not np.allclose(found[0], found[1])
 

@@ -296,6 +296,7 @@ class FlyPage(GradualTab):
         self._phase.setProperty("role", "heading")
         yield
         self.left = self._make_left()
+        yield
         self.right: QWidget | None = self._make_right()
         self.bottom: QWidget | None = self._make_bottom()
         yield

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QDateTime, QEvent, QLocale, QObject, QSignalBlocker, Qt, QTimer, Signal
+from PySide6.QtCore import QDateTime, QEvent, QLocale, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -23,6 +23,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.application.gradual import GradualTab
 from groundstation.gui.application.translate import translated, translated_finding
 from groundstation.gui.map.map_view import MapView
 from groundstation.gui.mission.export_dialog import ExportDialog, SendDialog
@@ -296,12 +297,15 @@ NO_BREAK_SPACE = "\u00a0"
 READABLE = "*.kmz *.plan *.waypoints *.txt *.kml *.csv"
 
 
-class MissionPage(QObject):
+class MissionPage(GradualTab):
     """The tab."""
 
-    def __init__(self, context: ApplicationContext, shared_view: SharedView) -> None:
-        super().__init__(shared_view)
+    def __init__(self, context: ApplicationContext, shared_view: SharedView, *, at_once: bool = True) -> None:
         self._context, self._shared_view = context, shared_view
+        super().__init__(shared_view, at_once=at_once)
+
+    def _parts(self) -> Iterator[None]:
+        context = self._context
         self._is_shown = False
         self._drawn: Document | None = None
         self._preflight: Preflight | None = None
@@ -309,17 +313,22 @@ class MissionPage(QObject):
         self._folder: Path | None = None
         self._ground_risk: GroundRiskRequest | None = None
         self.controller = MissionController(context, self)
-        self.findings, self.lists, self.sorties = FindingsView(), MissionLists(), SortieTable()
+        self.findings, self.sorties = FindingsView(), SortieTable()
+        yield
+        self.lists = MissionLists()
+        yield
         self._title, self._summary = QLabel(), QLabel()
         self._make_actions()
         self.left = self._make_left()
         self.right: QWidget | None = self.findings
         self.bottom: QWidget | None = self.lists
+        yield
         self._check_soon = QTimer(self, interval=REST_MS, singleShot=True)
         self._check_soon.timeout.connect(self.controller.check)
         self._connect()
         self._show_units(context.units)
         self._say_summary()
+        yield
 
     # A tab
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -28,6 +28,7 @@ from PySide6.QtWidgets import (
 )
 
 from groundstation.gui.application.context import ApplicationContext
+from groundstation.gui.application.gradual import GradualTab
 from groundstation.gui.charts.quality_chart import TrialChart
 from groundstation.gui.map.place_map import PlaceMap
 from groundstation.gui.photos.coverage_display import CoverageDisplay, PanelSightings
@@ -292,15 +293,19 @@ SIDE_PX, DETAIL_PX = 250, 320
 """First widths beside the photo, at 1280 pixels."""
 
 
-class PhotosPage(QObject):
+class PhotosPage(GradualTab):
     """The tab."""
 
-    def __init__(self, context: ApplicationContext, shared_view: SharedView) -> None:
-        super().__init__(shared_view)
+    def __init__(self, context: ApplicationContext, shared_view: SharedView, *, at_once: bool = True) -> None:
         self._context, self._shared_view = context, shared_view
+        super().__init__(shared_view, at_once=at_once)
+
+    def _parts(self) -> Iterator[None]:
+        context = self._context
         self.controller, self.questions = PhotosController.of(context), Questions()
         self.store = PhotoStore(self)
         self.strip, self.map, self.pane = ThumbnailStrip(self.store), PlaceMap(), PhotoPane(self.store)
+        yield
         self.findings, self.table, self.tools = FindingsList(), FacadeTable(), ToolBox()
         self.trials, self.sightings, self.poses = TrialChart(), PanelSightings(), PoseBox(self.controller)
         self.read, self.choose = QPushButton(self.tr("Read photos")), QPushButton(self.tr("Choose folder ..."))
@@ -313,13 +318,16 @@ class PhotosPage(QObject):
         self.render, self.width = QPushButton(self.tr("Render these photos ...")), ChoiceBox()
         self.folder, self.coverage, self.state = QLabel(), QLabel(), QLabel()
         self.coverage_shown = CoverageDisplay(context, self.controller, self.pane.scene, self.sightings, self)
+        yield
         self.left = self._make_page()
         self.right: QWidget | None = None
         self.bottom: QWidget | None = None
+        yield
         self._connect()
         self._units_changed(context.units)
         self._show_trials()
         self._show_photos()
+        yield
 
     # A tab
 

@@ -385,19 +385,21 @@ class PlanPage(GradualTab):
         self._measuring: Job[object] | None = None
         self._untouched = QTimer(self, singleShot=True, interval=UNTOUCHED_MS)
         self.controller = PlanController(context, self)
-        self.form, self.chart = PlanForm(), QualityChart(time.perf_counter)
+        self.form = PlanForm()
         yield
-        self.effects, self.panel, self.paint = EffectsPanel(), PanelDetail(), PaintBar()
-        self.sun, self.camera = SunPanel(), CameraPage()
+        self.chart, self.effects = QualityChart(time.perf_counter), EffectsPanel()
+        yield
+        self.panel, self.paint, self.sun = PanelDetail(), PaintBar(), SunPanel()
+        yield
+        self.camera = CameraPage()
         self.sun_controller = SunController(context, self.sun, lambda: self.controller.is_planning)
         self.effects_controller = EffectsController(
             context, self.effects.isVisible, lambda: self.controller.is_planning, self
         )
         yield
-        self.lists, self.viewpoint = (
-            PlanLists(context, self.controller),
-            ViewpointPage(context, self.controller, shared_view),
-        )
+        self.lists = PlanLists(context, self.controller)
+        yield
+        self.viewpoint = ViewpointPage(context, self.controller, shared_view)
         self.worth = LinesPlot(
             self.tr("Minutes in the air"),
             self.tr("Expected PSNR [dB]"),
@@ -410,6 +412,7 @@ class PlanPage(GradualTab):
         self._plan_button, self.camera_button = QPushButton(self.tr("Plan")), QToolButton()
         self._make_actions()
         self.left = self._make_left()
+        yield
         self.right: QWidget | None = self._make_right()
         self.bottom: QWidget | None = self.lists
         yield

@@ -240,7 +240,10 @@ class ReconstructPage(GradualTab):
             ReconstructQuestions(),
         )
         self._words = MachineTexts(self)
-        self.side, self.pane = ChoiceSide(self.controller, self._words), ViewPane(context, self.controller)
+        yield
+        self.side = ChoiceSide(self.controller, self._words)
+        yield
+        self.pane = ViewPane(context, self.controller)
         yield
         self.progress, self.light = ProgressPage(), LightPage()
         self.machine = QWidget()

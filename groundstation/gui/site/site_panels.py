@@ -355,7 +355,10 @@ class SiteTab(GradualTab):
         tools, grid_form = SiteTools(context, self._shared_view, editor), GridForm(context.units)
         yield
         grid_maker = GridController(context, self._shared_view, editor, tools, grid_form)
-        self.detail = SiteDetail(context, self.left, editor, grid_maker, tools, grid_form)
+        properties = PropertyPanel(context, editor)
+        yield
+        self.detail = SiteDetail(context, self.left, editor, grid_maker, tools, grid_form, properties)
+        yield
         self.right: QWidget | None = scrolled(self.detail)
         self.bottom: QWidget | None = None
         yield
@@ -477,11 +480,12 @@ class SiteDetail(QWidget):
         grid_maker: GridController,
         tools: SiteTools,
         grid_form: GridForm,
+        properties: PropertyPanel,
     ) -> None:
         super().__init__()
         self._context = context
         self.editor, self.grid_maker, self.tools, self.grid_form = editor, grid_maker, tools, grid_form
-        self.properties = PropertyPanel(context, self.editor)
+        self.properties = properties
         self.findings = FindingsList()
         self.findings.set_units(context.units)
         self._empty = QLabel(self.tr("What is selected on the site is shown here."))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF
 from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
 
-from groundstation.gui.view3d.drawables import ON_TOP, Drawable, joined, outlines
+from groundstation.gui.view3d.drawables import ON_TOP, Drawable, outlines
 from groundstation.gui.view3d.paint import flat, shaded
 from groundstation.gui.widgets.theme import Colours
 from planning.geo.frames import Angles, camera_axes
@@ -53,14 +53,22 @@ def _box(low: tuple[float, float, float], high: tuple[float, float, float]) -> A
     return np.array([[(x[i], y[j], z[k]) for i, j, k in face] for face in faces], np.float64)
 
 
+MOTORS = np.array([(ARM, ARM, 0.16), (-ARM, ARM, 0.16), (ARM, -ARM, 0.16), (-ARM, -ARM, 0.16)])
+
+
+def _rims() -> Array:
+    """The circles of the propellers, shape (4, n, 3)."""
+    angle = np.arange(N_CORNERS) * 2.0 * math.pi / N_CORNERS
+    circle = PROPELLER * np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=1)
+    return MOTORS[:, None] + circle
+
+
 def _discs() -> Array:
     """The discs of the propellers as fans of quadrilaterals, shape (4 n, 4, 3); the front ones are the first half."""
     angle = np.linspace(0.0, 2.0 * math.pi, N_CORNERS + 1)
     rim = PROPELLER * np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=1)
-    motors = [(ARM, ARM, 0.16), (-ARM, ARM, 0.16), (ARM, -ARM, 0.16), (-ARM, -ARM, 0.16)]
     fans = []
-    for motor in motors:
-        centre = np.array(motor)
+    for centre in MOTORS:
         for i in range(0, N_CORNERS, 2):
             fans.append([centre, centre + rim[i], centre + rim[i + 1], centre + rim[i + 2]])
     return np.array(fans)
@@ -83,7 +91,7 @@ def _nose() -> Array:
 
 
 BODY = _box((-BODY_HALF[0], -BODY_HALF[1], -BODY_HALF[2]), BODY_HALF)
-DISCS, ARMS, NOSE_ARROW = _discs(), _arms(), _nose()
+RIMS, DISCS, ARMS, NOSE_ARROW = _rims(), _discs(), _arms(), _nose()
 
 
 def body_axes(attitude: Angles) -> Array:
@@ -113,23 +121,19 @@ def aircraft_drawables(
     def placed(corners: Array) -> Array:
         return np.asarray(place_enu_m + scale * corners @ axes)
 
-    def quads(corners: Array, colour: str, opacity: float = 1.0) -> Drawable:
-        at = placed(corners)
+    def quads(*parts: tuple[Array, str], opacity: float = 1.0) -> Drawable:
+        at = placed(np.concatenate([corners for corners, _ in parts]))
         normals = np.cross(at[:, 2] - at[:, 0], at[:, 3] - at[:, 1])
-        colours = flat(colour, len(at), opacity)
+        colours = np.concatenate([flat(colour, len(corners), opacity) for corners, colour in parts])
         lengths = np.linalg.norm(normals, axis=1, keepdims=True)
         shading = shaded(colours, normals / np.maximum(lengths, 1e-12))
         return Drawable(at.reshape(-1, 3), np.arange(4 * len(at)).reshape(-1, 4), shading)
 
     half = len(DISCS) // 2
-    rims = [outlines(placed(_rim(number))[None]) for number in range(4)]
-    lines, cells = joined(rims)
+    lines, cells = outlines(placed(RIMS))
     found = [
-        quads(DISCS[:half], look.error, 0.55),
-        quads(DISCS[half:], look.accent, 0.55),
-        quads(ARMS, look.text),
-        quads(BODY, look.muted),
-        quads(NOSE_ARROW, look.error),
+        quads((DISCS[:half], look.error), (DISCS[half:], look.accent), opacity=0.55),
+        quads((ARMS, look.text), (BODY, look.muted), (NOSE_ARROW, look.error)),
         Drawable(lines, cells, flat(look.text, len(cells)), width_px=2.0, depth_shift=ON_TOP),
     ]
     if camera is not None:
@@ -138,13 +142,6 @@ def aircraft_drawables(
         ends = place_enu_m + scale * np.stack([eye, eye + CAMERA_LENGTH * forward])
         found.append(Drawable(ends, np.array([[0, 1]]), flat(look.text, 1), width_px=6.0, depth_shift=ON_TOP))
     return found
-
-
-def _rim(number: int) -> Array:
-    """The circle of a propeller, shape (n, 3)."""
-    angle = np.arange(N_CORNERS) * 2.0 * math.pi / N_CORNERS
-    x, y = ((ARM, ARM), (-ARM, ARM), (ARM, -ARM), (-ARM, -ARM))[number]
-    return np.stack([x + PROPELLER * np.cos(angle), y + PROPELLER * np.sin(angle), np.full_like(angle, 0.16)], axis=1)
 
 
 def paint_aircraft(

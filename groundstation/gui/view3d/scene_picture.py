@@ -328,8 +328,7 @@ class ScenePicture(QWidget):
 
     def set_site(self, model: SiteModel | None, *, keep_camera: bool = False) -> None:
         """Draw a site, or none; the plan stays. Values and coverage of other panels go."""
-        had = self._site
-        self._site = None if model is None else site_scene(model, colours())
+        had, self._site = self._site, None if model is None else site_scene(model, colours())
         self._index, self._surfaces = None, ()
         is_same = had is not None and self._site is not None and had.panel_index == self._site.panel_index
         if not is_same:
@@ -389,10 +388,11 @@ class ScenePicture(QWidget):
         self._show_textured()
 
     def set_watched(self, is_watched: bool) -> None:
-        """Whether a flight moves in the view: it is at rest for no moment then."""
+        """Whether a flight moves in the view: it is at rest for no moment then, so edges are not smoothed."""
         if is_watched != self._is_watched:
             self._is_watched = is_watched
             self._show_textured()
+            self._stir()
 
     def _show_textured(self) -> None:
         """Textured layers that keep the view from turning smoothly, or may in a flight, are drawn while it rests."""
@@ -878,7 +878,7 @@ class ScenePicture(QWidget):
 
     def _come_to_rest(self) -> None:
         self._set_moving(False)
-        self._canvas.set_smooth(True)
+        self._canvas.set_smooth(not self._is_watched)
         self._paint_domes()
         self._make_index()
 

@@ -197,18 +197,9 @@ class MainWindow(QMainWindow):
         """A tab by its name; made when it was not yet."""
         if name not in self._tabs:
             spec = next(spec for spec in TABS if spec.name == name)
-            page = self._begun(spec)
-            if isinstance(page, GradualTab):
-                page.finish()
-            self._tabs[name] = page
-            if spec.place is Place.WHOLE_PAGE:
-                self._pages.addWidget(page.left)
-            else:
-                self._left.addWidget(scrolled(page.left))
-                if page.right is not None:
-                    self._right.addWidget(page.right)
-                if page.bottom is not None:
-                    self._bottom.addWidget(page.bottom)
+            while self._make_part(spec):
+                pass
+            self._tabs[name] = self._begun(spec)
         return self._tabs[name]
 
     def _begun(self, spec: TabSpec) -> Tab:
@@ -262,14 +253,23 @@ class MainWindow(QMainWindow):
             if following.module not in self._ready:
                 self._make_soon.start()
             elif following.name not in self._tabs:
-                # Its place, which takes half as long again, in a turn of its own, too.
                 has_more = self._make_part(following)
                 QTimer.singleShot(TURN_MS, self, self._make_next if has_more else lambda: self.tab(following.name))
 
     def _make_part(self, spec: TabSpec) -> bool:
-        """Make another part of a tab; whether there may be more."""
+        """Make another part of a tab, or give one its place, which takes half as long again; whether there was one."""
         is_known, page = spec.name in self._begun_tabs, self._begun(spec)
-        return page.go_on() if isinstance(page, GradualTab) else not is_known
+        if page.go_on() if isinstance(page, GradualTab) else not is_known:
+            return True
+        if spec.place is Place.WHOLE_PAGE:
+            places: list[tuple[CurrentStack, QWidget | None]] = [(self._pages, page.left)]
+        else:
+            places = [(self._left, page.left), (self._right, page.right), (self._bottom, page.bottom)]
+        for stack, widget in places:
+            if widget is not None and not stack.isAncestorOf(widget):
+                stack.addWidget(scrolled(widget) if stack is self._left else widget)
+                return True
+        return False
 
     def _announce(self, spec: TabSpec) -> None:
         """Show a tab's title while it is made, a part in each turn: the window answers meanwhile."""
