@@ -853,6 +853,41 @@ def test_textured_layers_are_drawn_in_motion_only_where_frames_were_measured_to_
     view.set_watched(False)
 
 
+def test_what_a_widget_of_a_graphics_card_draws_a_processor_shows_as_a_picture(application, monkeypatch):
+    from groundstation.gui.view3d import canvas as canvas_module
+    from groundstation.gui.view3d.scene_view import SceneView
+
+    drawn, shown = [], []
+    for is_software in (True, False):
+        monkeypatch.setattr(canvas_module, "is_drawn_by_processor", lambda value=is_software: value)
+        view = SceneView()
+        view.canvas().smooths_at_rest = False
+        view.resize(*SIZE)
+        view.show()
+        QTest.qWaitForWindowExposed(view)
+        view.set_site(office())
+        turn_until(application, lambda view=view: view.canvas().n_painted > 1)
+        view.canvas().renderer.SetUseFXAA(False)
+        view.canvas().set_background_colour("#204060")
+        drawn.append(picture(application, view))
+        assert drawn[-1].shape[:2] == (view.canvas().height(), view.canvas().width())
+        view.resize(SIZE[0] - 100, SIZE[1] - 50)
+        settle(application)
+        shown.append(view.screenshot().astype(int))
+        assert view.canvas().childAt(50, 50) is None, "the mouse is the canvas's own"
+        # What lies over it has changed alone: no frame for that.
+        painted = view.canvas().n_painted
+        view.canvas().update()
+        application.processEvents()
+        assert (view.canvas().n_painted == painted) or not is_software
+        view.close_view()
+        view.deleteLater()
+        settle(application)
+    assert differs(*drawn) == 0
+    assert differs(*shown) < 1e-3 * shown[0][..., 0].size
+    assert drawn[0].std() > 10.0, "something is seen"
+
+
 def test_edges_are_smoothed_at_rest_and_never_while_a_flight_moves_in_the_view(application, view):
     view.set_site(office())
     canvas = view.canvas()

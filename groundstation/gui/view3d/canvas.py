@@ -1,13 +1,18 @@
-"""The OpenGL widget: draws drawables by name through a pinhole, and reports the mouse. It knows nothing of sites.
+"""Draws drawables by name through a pinhole, by OpenGL. It knows nothing of sites.
 
-A change only marks the widget for repainting; Qt paints once per turn of its event loop, and not at all while the
-widget is hidden. Nothing here asks VTK to render.
+A change only marks the canvas for repainting; Qt paints once per turn of its event loop, and not at all while the
+canvas is hidden. Nothing here asks VTK to render.
+
+A window with an OpenGL widget in it is put together by OpenGL, all of it, whatever changed. For a graphics card that
+is nothing. Where the processor draws in its place, a frame took 33 to 45 ms and another figure in a label 20 ms; so
+there the canvas shows pictures of an OpenGL widget that no window has: 5 and 0.4 ms.
 """
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from time import perf_counter
 
 import numpy as np
@@ -17,10 +22,20 @@ import pyvista as pv
 import vtkmodules.vtkInteractionWidgets
 import vtkmodules.vtkViewsContext2D  # noqa: F401
 from numpy.typing import NDArray
-from PySide6.QtCore import Qt, QTimer, Signal
-from PySide6.QtGui import QColor, QImage, QResizeEvent, QShowEvent
-from PySide6.QtWidgets import QWidget
+from PySide6.QtCore import QCoreApplication, QSize, Qt, QTimer, Signal
+from PySide6.QtGui import (
+    QColor,
+    QImage,
+    QOffscreenSurface,
+    QOpenGLContext,
+    QPainter,
+    QPaintEvent,
+    QResizeEvent,
+    QShowEvent,
+)
+from PySide6.QtWidgets import QSizePolicy, QWidget
 from pyvistaqt import QtInteractor
+from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
 
 from groundstation.gui.application.gradual import TURN_MS
@@ -42,6 +57,20 @@ DEPTH_RATIO = 1e-4
 
 SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swrast", "swiftshader", "basic render driver")
 """Names that OpenGL gives itself where the processor draws: Mesa's, Google's and Microsoft's."""
+
+GL_RENDERER = 0x1F01
+
+
+@cache
+def is_drawn_by_processor() -> bool:
+    """Whether OpenGL has no graphics card; asked once, in a context of its own."""
+    context, surface = QOpenGLContext(), QOffscreenSurface()
+    surface.create()
+    if not (context.create() and context.makeCurrent(surface)):
+        return False
+    name = str(context.functions().glGetString(GL_RENDERER)).lower()
+    context.doneCurrent()
+    return any(each in name for each in SOFTWARE_RENDERERS)
 
 
 @dataclass(slots=True)
@@ -108,7 +137,70 @@ N_TIMED = 5
 """Frames of a view that moves that are measured, behind the first."""
 
 
-class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
+class _Surface(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
+    """What VTK draws on.
+
+    Parameters
+    ----------
+    begin
+        Called once its context is there.
+    paint
+        Given the function that draws a frame.
+    """
+
+    def __init__(
+        self, parent: QWidget | None, begin: Callable[[], None], paint: Callable[[Callable[[], None]], None]
+    ) -> None:
+        super().__init__(parent, auto_update=False, multi_samples=0)
+        self._begin, self._paint = begin, paint
+        # Files that are dropped belong to the window, not to VTK's readers; so do mouse and keyboard.
+        self.setAcceptDrops(False)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.remove_all_lights()
+        self.renderer.SetUseOIT(False)
+
+    def close(self) -> None:
+        """Free the context."""
+        super().close()
+        # A surface is no QObject: Qt does not tell PySide of its end, and a wrapper that is kept would be found again
+        # for whatever lies at its address later, as an object of a wrong class.
+        self._forget_context()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Paint with the window: Qt would paint here at once, and then once more."""
+        is_on = self.updatesEnabled()
+        self.setUpdatesEnabled(False)
+        super().resizeEvent(event)
+        self.setUpdatesEnabled(is_on)
+
+    def initializeGL(self) -> None:  # noqa: N802
+        """Begin to draw."""
+        super().initializeGL()
+        self._begin()
+
+    def paintGL(self) -> None:  # noqa: N802
+        """Draw a frame."""
+        self._paint(super().paintGL)
+
+    def draw(self) -> None:
+        """Draw a frame that Qt shows nowhere."""
+        self.ren_win.GetState().Reset()
+        self.ren_win.Render()
+
+    def pixels(self) -> QImage:
+        """The frame, as VTK holds it: through Qt's own framebuffer it took a processor 8 ms more."""
+        width, height = self.ren_win.GetSize()
+        found = vtkUnsignedCharArray()
+        self.ren_win.GetRGBACharPixelData(0, 0, width - 1, height - 1, 0, found)
+        upwards: NDArray[np.uint8] = pv.convert_array(found)
+        downwards = np.ascontiguousarray(upwards.reshape(height, width, 4)[::-1])
+        # Converting makes a copy, and what is converted once is painted often.
+        picture = QImage(downwards.data, width, height, 4 * width, QImage.Format.Format_RGBX8888)
+        return picture.convertToFormat(QImage.Format.Format_RGB32)
+
+
+class Canvas(QWidget):
     """Drawables by name, shown or hidden, seen through a pinhole.
 
     Multi-sampling, lamps and order-independent transparency are off: each costs a processor that draws in place of a
@@ -126,17 +218,19 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
     started = Signal(bool)
 
     def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent, auto_update=False, multi_samples=0)
-        # Files that are dropped belong to the window, not to VTK's readers.
-        self.setAcceptDrops(False)
+        super().__init__(parent)
         # The wheel moves the view and leaves the focus where it is.
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.remove_all_lights()
-        self.renderer.SetUseOIT(False)
+        self.setMouseTracking(True)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
+        self._is_software = is_drawn_by_processor()
+        self._surface = _Surface(None if self._is_software else self, self._begin, self._paint_frame)
+        self.renderer = self._surface.renderer
+        self._picture, self._is_stale = QImage(), True
         self._drawn: dict[Hashable, list[_Drawn]] = {}
         self._hidden: set[Hashable] = set()
         self._opacities: dict[Hashable, float] = {}
-        self._is_software = False
         self.smooths_at_rest = True
         self._background = ("#ffffff", "")
         self._pinhole: Pinhole | None = None
@@ -161,14 +255,12 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
             self.moving_frame_s, self._frame_times_s = float(np.median(self._frame_times_s[1:])), None
             self.framesTimed.emit()
 
-    def close(self) -> None:
+    def close(self) -> bool:
         """Free the OpenGL context. What comes after, such as the end of a job, is heard and draws nothing."""
         self.is_open = False
         self._drawn.clear()
-        super().close()
-        # A surface is no QObject: Qt does not tell PySide of its end, and a wrapper that is kept would be found again
-        # for whatever lies at its address later, as an object of a wrong class.
-        self._forget_context()
+        self._surface.close()
+        return super().close()
 
     def draw(self, name: Hashable, drawables: Sequence[Drawable]) -> None:
         """Draw these under a name, in place of what was drawn under it."""
@@ -200,7 +292,7 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
             return
         (drawn,) = self._drawn[name]
         drawn.recolour(colours)
-        self.update()
+        self._draw_anew()
 
     def set_shown(self, name: Hashable, is_shown: bool) -> None:
         """Show or hide what is, or will be, drawn under a name."""
@@ -214,7 +306,7 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
         self._opacities[name] = opacity
         for part in self._drawn.get(name, ()):
             part.actor.GetProperty().SetOpacity(opacity)
-        self.update()
+        self._draw_anew()
 
     def set_background_colour(self, colour: str, top: str = "") -> None:
         """Colour behind everything, `#rrggbb`; with `top`, a graphics card lets it go over into that one upwards.
@@ -227,14 +319,14 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
             self.renderer.SetBackground(*(0.5 * (low + high) if self._is_software else low))
             self.renderer.SetBackground2(*high)
             self.renderer.SetGradientBackground(bool(top) and not self._is_software)
-            self.update()
+            self._draw_anew()
 
     def set_smooth(self, is_smooth: bool) -> None:
         """Smooth edges where a processor draws: for a view at rest, for it takes most of a frame's time."""
         is_smooth = is_smooth and self.smooths_at_rest
         if self.is_open and self._is_software and bool(self.renderer.GetUseFXAA()) != is_smooth:
             self.renderer.SetUseFXAA(is_smooth)
-            self.update()
+            self._draw_anew()
 
     def look_through(self, pinhole: Pinhole) -> None:
         """See the scene through a pinhole; its size counts only by its aspect ratio."""
@@ -260,28 +352,62 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
         self.setUpdatesEnabled(False)
         QTimer.singleShot(TURN_MS, self, lambda: self.setUpdatesEnabled(True))
 
+    def sizeHint(self) -> QSize:  # noqa: N802
+        """As large as there is room for."""
+        return QSize(400, 400)
+
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
-        """Paint with the window: Qt would paint here at once, and then once more."""
-        is_on = self.updatesEnabled()
-        self.setUpdatesEnabled(False)
+        """Fill the widget."""
         super().resizeEvent(event)
-        self.setUpdatesEnabled(is_on)
+        if self._is_software:
+            self._draw_anew()
+        else:
+            self._surface.setGeometry(self.rect())
+
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
+        """Show the picture, drawn anew where anything changed; a graphics card has a widget over this one."""
+        if not self._is_software:
+            super().paintEvent(event)
+            return
+        if self._is_stale and self.is_open:
+            self._picture = self._taken()
+        painter = QPainter(self)
+        painter.drawImage(self.rect(), self._picture)
+        painter.end()
+
+    def _draw_anew(self) -> None:
+        """Paint soon."""
+        self._is_stale = True
+        (self if self._is_software else self._surface).update()
+
+    def _taken(self) -> QImage:
+        """What is drawn, opaque."""
+        self._is_stale = False
+        if not self._is_software:
+            picture: QImage = self._surface.grabFramebuffer()
+            return picture.convertToFormat(QImage.Format.Format_RGB32)
+        before = self._surface.size()
+        if self._surface.context() is None or before != self.size():
+            self._surface.resize(self.size())
+            # Qt keeps it for when the widget is shown, which this one never is.
+            QCoreApplication.sendEvent(self._surface, QResizeEvent(self.size(), before))
+        self._surface.makeCurrent()
+        self._paint_frame(self._surface.draw)
+        return self._surface.pixels()
 
     def warm_up(self) -> None:
         """Compile what every frame needs while none is wanted yet: 50 of the 70 ms of a first frame without a card."""
         if self.is_open and self.n_painted == 0 and not self.isVisible():
-            self.grabFramebuffer()
+            self._taken()
+            self._is_stale = True
 
-    def initializeGL(self) -> None:  # noqa: N802
+    def _begin(self) -> None:
         """Smooth edges where a graphics card draws; a processor in its place takes 50 ms for that: see `set_smooth`."""
-        super().initializeGL()
-        renderer = self.ren_win.ReportCapabilities().lower()
-        self._is_software = any(name in renderer for name in SOFTWARE_RENDERERS)
         self.renderer.SetUseFXAA(not self._is_software)
         self.set_background_colour(*self._background)
         self.started.emit(self._is_software)
 
-    def paintGL(self) -> None:  # noqa: N802
+    def _paint_frame(self, render: Callable[[], None]) -> None:
         """Draw, and count it."""
         self.n_painted += 1
         if self._is_detail_due and self.is_open:
@@ -289,9 +415,9 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
             self._show_detail()
         is_whole = self._n_layers >= len(self._drawn)
         started_s = perf_counter()
-        super().paintGL()
+        render()
         if self._frame_times_s is not None and is_whole and not self.renderer.GetUseFXAA():
-            self.ren_win.WaitForCompletion()
+            self._surface.ren_win.WaitForCompletion()
             self._note_frame(perf_counter() - started_s)
         if self._n_layers < len(self._drawn) and self.is_open:
             self._n_layers = 2 * self._n_layers + 1
@@ -304,12 +430,12 @@ class Canvas(QtInteractor):  # type: ignore[misc]  # pyvistaqt has no types
     def picture(self) -> NDArray[np.uint8]:
         """What is drawn, without what lies over the widget, shape (height, width, 3)."""
         self.show_all_layers()
-        return image_array(self.grabFramebuffer())
+        return image_array(self._taken())
 
     def _detail_changed(self) -> None:
         """Paint soon; the detail is looked at once, however much has changed by then."""
         self._is_detail_due = True
-        self.update()
+        self._draw_anew()
 
     def _show_detail(self) -> None:
         """Switch on what the layers and the distance call for; fit near and far to it."""
