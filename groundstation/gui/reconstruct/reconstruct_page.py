@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -248,7 +248,8 @@ class ReconstructPage(GradualTab):
         self.progress, self.light = ProgressPage(), LightPage()
         self.machine = QWidget()
         self._machine_lines: list[QLabel] = []
-        self.left = self._make_page()
+        yield
+        self.left = yield from self._made_page()
         self.right: QWidget | None = None
         self.bottom: QWidget | None = None
         self._was_busy = False
@@ -294,11 +295,15 @@ class ReconstructPage(GradualTab):
 
     # How it is put together
 
-    def _make_page(self) -> QWidget:
-        side, detail = scrolled(self.side), self._make_detail()
+    def _made_page(self) -> Generator[None, None, QWidget]:
+        side = scrolled(self.side)
         side.setMinimumWidth(SIDE_PX)
+        yield
+        detail = self._make_detail()
         detail.setMinimumWidth(LEAST_DETAIL_PX)
+        yield
         self.splitter = split((side, self.pane, detail), (SIDE_PX, 1280 - SIDE_PX - DETAIL_PX, DETAIL_PX), 1)
+        yield
         return padded(self.splitter)
 
     def _make_detail(self) -> QTabWidget:
