@@ -226,6 +226,7 @@ class Canvas(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self._is_software = is_drawn_by_processor()
         self._surface = _Surface(None if self._is_software else self, self._begin, self._paint_frame)
+        self.destroyed.connect(self._surface.deleteLater)
         self.renderer = self._surface.renderer
         self._picture, self._is_stale = QImage(), True
         self._drawn: dict[Hashable, list[_Drawn]] = {}
