@@ -77,13 +77,16 @@ def needs_baking(model: SceneModel) -> bool:
 
 
 @torch.no_grad()
-def baked(scene: GsScene, model: SceneModel, monitor: Monitor = QUIET) -> GsScene:
+def baked(scene: GsScene, model: SceneModel, degree: int = DEGREE, monitor: Monitor = QUIET) -> GsScene:
     """The scene with Gaussians on panels that have, and no longer mirror, what the panels show.
 
     Parameters
     ----------
     scene
         Any of the components of `model`'s.
+    degree
+        Of the harmonics of what is written: they are fitted to half of all directions, where they are not orthogonal,
+        so a fit of a higher degree that is cut comes out worse than one of the degree itself.
 
     Raises
     ------
@@ -103,7 +106,7 @@ def baked(scene: GsScene, model: SceneModel, monitor: Monitor = QUIET) -> GsScen
             monitor.report(say("baking panels"), done, n_panels)
             done += 1
             for rows in _pieces(element.start, element.stop):
-                sh[rows] = _shown(component, rows, element.panel, model, table, np.asarray(scene.origin_enu_m))
+                sh[rows] = _shown(component, rows, element.panel, model, table, np.asarray(scene.origin_enu_m), degree)
                 reflectivity[rows] = ALMOST_NO_LOGIT
         values = {**component.gaussians.values, "sh": sh, "reflectivity_logits": reflectivity}
         components.append(replace(component, gaussians=replace(component.gaussians, values=values)))
@@ -122,6 +125,7 @@ def _shown(
     model: SceneModel,
     table: RayTable,
     origin_enu_m: NDArray[np.float64],
+    degree: int,
 ) -> NDArray[np.float32]:
     """Coefficients, shape (n, 16, 3), of what Gaussians on a panel show from in front of it."""
     assert model.light is not None
@@ -145,7 +149,7 @@ def _shown(
     reflectivity = torch.sigmoid(part["reflectivity_logits"]).repeat_interleave(k)[:, None]
     fresnel = schlick(torch.sigmoid(part["f0_logits"]).repeat_interleave(k, dim=0), cosines)
     shown = display_from_linear(shade(colours, reflectivity, fresnel, light)).clamp(max=1.0)
-    return fitted_harmonics(-outwards, shown.reshape(n, k, 3), DEGREE).numpy()
+    return fitted_harmonics(-outwards, shown.reshape(n, k, 3), degree).numpy()
 
 
 def outward_directions(normal: Tensor) -> Tensor:

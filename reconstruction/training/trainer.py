@@ -511,7 +511,7 @@ class Trainer(TrainingState):
             )  # fmt: skip
             self._require_finite(None)
             if found.looked_at is not None:
-                self.transients.see(sample, *found.looked_at)
+                self.transients.see(sample, *found.looked_at, self.progress)
             self.is_editing = True
             self._learn_on(card, found, strategy, 1.0 + weight)
         else:
@@ -519,7 +519,7 @@ class Trainer(TrainingState):
             picture = self.picture(sample, self.exposures(sample.number), offsets, move)
             terms = self._gradients(picture, looked_at, more)
             if is_looked_at:
-                self.transients.see(sample, picture.display, picture.raster.surface_depths_m)
+                self.transients.see(sample, picture.display, picture.raster.surface_depths_m, self.progress)
             self.is_editing = True
             observe_pictures(strategy, picture.raster, offsets, samples, self._ranks, weight)
             strategy.before_step(at.step, splats, self.optimiser)

@@ -23,6 +23,7 @@ from reconstruction.exports.mesh import ALMOST_NO_LOGIT, baked
 from reconstruction.exports.ply_export import write_ply
 from reconstruction.exports.sog import write_sog
 from reconstruction.exports.spz import write_spz
+from reconstruction.exports.web import WebOptions
 from reconstruction.light.photo_set import PhotoSet, read_photo_set
 from reconstruction.light.shading import display_from_linear
 from reconstruction.objects.gs_scene import GsGaussian, GsScene
@@ -40,7 +41,7 @@ from reconstruction.training.model.saved import TrainedModel
 from reconstruction.training.model.score import score_views
 from reconstruction.training.train import train_model
 from tests.benchmarks.harness import Benchmark, Context, Row
-from tests.benchmarks.page_pictures import page_rows
+from tests.benchmarks.page_pictures import LEAST_PICKED, page_rows
 from tests.reconstruction.exports.sog.reading import read_sog
 from tests.reconstruction.exports.spz.reading import read_spz
 
@@ -48,7 +49,11 @@ N_VIEWS, WIDTH_PX = 60, 256
 QUICK_N_VIEWS, QUICK_WIDTH_PX = 10, 48
 N_SHOWN, QUICK_N_SHOWN = 12, 2
 
-LEAST_PICKED = 99.9
+FURTHER_SCENES = ("curved", "court", "concrete")
+"""Whose web pages are measured as well: glass that is bent along an arc, that sees glass, and set back in a wall."""
+
+FURTHER_N_VIEWS, FURTHER_WIDTH_PX = 24, 192
+"""Fewer and smaller: a page is compared with the program, and photos of the court take long."""
 
 MANY, QUICK_MANY = 1_000_000, 20_000
 """Gaussians of the model that times are taken of: the trained ones over and over, each time changed a little."""
@@ -80,13 +85,38 @@ class Found:
 
 
 def measure(context: Context) -> Iterator[Row]:
-    """Presets and single knobs on a trained model with its mirrored light baked in; times on a large one."""
+    """Presets and single knobs on a trained model with its mirrored light baked in; times on a large one; more pages.
+
+    What is recorded already of the planar scene, or of the page of another one, is not measured again.
+    """
+    known = [row for row in context.recorded if row.scene not in FURTHER_SCENES]
+    yield from known or _of_planar(context)
+    for name in FURTHER_SCENES[:1] if context.is_quick else FURTHER_SCENES:
+        known = [row for row in context.recorded if row.scene == name]
+        yield from known or _page_of(name, context.is_quick)
+
+
+def _page_of(name: str, is_quick: bool) -> Iterator[Row]:
+    """A model of another scene and its web page, with the scene in the place of what a row was measured on."""
+    with tempfile.TemporaryDirectory() as place:
+        size = (QUICK_N_VIEWS, QUICK_WIDTH_PX) if is_quick else (FURTHER_N_VIEWS, FURTHER_WIDTH_PX)
+        trained = _trained(name, Path(place) / name, *size, is_quick)
+        scene, source = baked(organised(trained), trained.model), read_photo_set(Path(place) / name)
+        for row in (*_baking(trained, scene, source, Path(place)), _picking(trained, source)):
+            yield replace(row, scene=name, what=f"{row.what}, {row.scene}")
+
+
+def _trained(name: str, folder: Path, n_views: int, width: int, is_quick: bool) -> TrainedModel:
+    render_photos(SceneRequest(name, n_views=n_views, width_px=width), folder, 1)
+    return train_model(folder, _config(is_quick))
+
+
+def _of_planar(context: Context) -> Iterator[Row]:
     is_quick = context.is_quick
-    n_views, width = (QUICK_N_VIEWS, QUICK_WIDTH_PX) if is_quick else (N_VIEWS, WIDTH_PX)
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "planar"
-        render_photos(SceneRequest("planar", n_views=n_views, width_px=width), folder, 1)
-        trained = train_model(folder, _config(is_quick))
+        size = (QUICK_N_VIEWS, QUICK_WIDTH_PX) if is_quick else (N_VIEWS, WIDTH_PX)
+        trained = _trained("planar", folder, *size, is_quick)
         scene = baked(organised(trained), trained.model)
         photos = read_photo_set(folder).photos
         shown = photos[:: max(1, len(photos) // (QUICK_N_SHOWN if is_quick else N_SHOWN))]
@@ -136,7 +166,9 @@ def _baking(trained: TrainedModel, scene: GsScene, source: PhotoSet, folder: Pat
         known = [score.facade.psnr_db for score in scores if score.facade.psnr_db is not None]
         psnrs_db.append(statistics.fmean(known))
         yield Row(f"{len(known)} unseen photos", f"facades, model {name}", round(psnrs_db[-1], 2), "dB")
-    yield from page_rows(trained, scene, source, psnrs_db[0], folder)
+    yield from page_rows(
+        trained, baked(organised(trained), trained.model, WebOptions().degree), source, psnrs_db[0], folder
+    )
 
 
 def _picking(trained: TrainedModel, source: PhotoSet) -> Row:
@@ -263,7 +295,8 @@ BENCHMARK = Benchmark(
     "model-size",
     "Compressed models: size against quality",
     f"A model of {N_VIEWS} rendered photos of the bundled planar scene, its mirrored light baked into colours by "
-    "direction (what that costs comes first, also in the web page in headless Chromium), "
+    "direction (what that costs comes first, also in the web page in headless Chromium, for models of "
+    f"{FURTHER_N_VIEWS} photos of the {', '.join(FURTHER_SCENES[:-1])} and {FURTHER_SCENES[-1]} scenes, too), "
     "written as SPZ and SOG, read back and rendered: PSNR of whole pictures "
     "against those of the baked model as it was. Times are processor times of one thread, of a model of the same "
     "Gaussians many times over, each copy with random changes of all numbers.",

@@ -1,4 +1,7 @@
-"""A model's web page in headless Chromium, photo by photo: with panes as mirrors, and with mirrored light baked in."""
+"""A model's web page in headless Chromium, photo by photo: with panes as mirrors, and with mirrored light baked in.
+
+Its pictures are compared with photos not learned from and with the program's own, and panes are picked in it.
+"""
 
 from __future__ import annotations
 
@@ -36,8 +39,14 @@ WITHOUT_WEBGPU = "delete Navigator.prototype.gpu"
 MOST_LOST_DB = 1.0
 
 
+N_PICKED = 40
+"""Places in each photo at which a pane is picked, all on glass."""
+
+LEAST_PICKED = 99.9
+
+
 def page_rows(trained: TrainedModel, scene: GsScene, source: PhotoSet, model_db: float, folder: Path) -> Iterator[Row]:
-    """PSNR of facades of photos not learned from, and of whole pictures against the program's own.
+    """PSNR of facades of photos not learned from, and of whole pictures against the program's own; panes picked right.
 
     Parameters
     ----------
@@ -68,15 +77,21 @@ def page_rows(trained: TrainedModel, scene: GsScene, source: PhotoSet, model_db:
             browser.open(page.path)
             browser.settled()
             found = [
-                _scores(trained, source, sample, photos.photos[number].name, browser)
+                (
+                    *_scores(trained, source, sample, photos.photos[number].name, browser),
+                    _picked_right(scene, source, sample.view, photos.photos[number].name, browser),
+                )
                 for number, sample in enumerate(samples)
             ]
-            facade, own = (statistics.fmean(each) for each in zip(*found, strict=True))
+            facade, own, picked = (statistics.fmean(each) for each in zip(*found, strict=True))
             is_met = facade >= model_db - MOST_LOST_DB
             target = (f"at most {MOST_LOST_DB:g} dB below the model", is_met) if "WebGPU" in name else ()
             on = f"{len(found)} unseen photos"
             yield Row(on, f"facades, page by {name}", round(facade, 2), "dB", None, "", *target)
             yield Row(on, f"page by {name}, against the program's pictures", round(own, 2), "dB")
+            target = (f"at least {LEAST_PICKED:g} %", 100.0 * picked >= LEAST_PICKED)
+            what = f"glass picked right, page by {name}, of {N_PICKED * len(found)} places"
+            yield Row(on, what, round(100.0 * picked, 2), "%", None, "", *target)
 
 
 def _scores(
@@ -94,6 +109,25 @@ def _scores(
     scored = score_picture(found, sample.display.numpy(), facade, with_ssim=False).psnr_db
     assert scored is not None
     return scored, -10.0 * float(np.log10(max(float(np.mean((shown - own) ** 2)), 1e-12)))
+
+
+def _picked_right(scene: GsScene, source: PhotoSet, view: View, name: str, browser: Browser) -> float:
+    """Share of places on glass of a photo, which the page shows, whose pane a click there picks."""
+    truth, glass = (
+        cv2.imread(str(source.folder / layer / f"{name}.png"), cv2.IMREAD_UNCHANGED) for layer in ("panels", "glass")
+    )
+    rows, columns = np.nonzero(glass)
+    chosen = np.random.default_rng(0).choice(len(rows), N_PICKED, replace=len(rows) < N_PICKED)
+    rows, columns = rows[chosen], columns[chosen]
+    camera = browser.run("return reflight.camera()")
+    x = 0.5 * camera["width"] + camera["focal"] * (columns + 0.5 - view.cx_px) / view.fx_px
+    y = 0.5 * camera["height"] + camera["focal"] * (rows + 0.5 - view.cy_px) / view.fy_px
+    script = """const found = [];
+    for (const [x, y] of arguments[0]) found.push(await reflight.seenAt(x, y));
+    return found;"""
+    numbers = {element.global_id: element.panel for _, element in scene.elements}
+    found = [numbers.get(each, -1) for each in browser.run(script, np.column_stack([x, y]).tolist())]
+    return float(np.mean(np.array(found) == truth[rows, columns].astype(int) - 1))
 
 
 def _shown(view: View, browser: Browser) -> tuple[Picture, View]:

@@ -6,6 +6,7 @@ import ast
 import importlib
 import math
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 
@@ -14,7 +15,7 @@ import pytest
 
 from planning.plan import ViewpointArrays
 from planning.routing.sorties import SortieProblem, sortie_durations_s
-from tests.benchmarks import flight_worth, next_battery
+from tests.benchmarks import flight_worth, model_sizes, next_battery
 from tests.benchmarks.__main__ import main, run_all
 from tests.benchmarks.catalogue import BENCHMARKS
 from tests.benchmarks.fresh_process import run_command
@@ -107,6 +108,22 @@ def test_seeds_of_the_next_battery_that_are_recorded_are_not_flown_again(monkeyp
     rows = next_battery.measure_scene("planar", recorded, is_quick=False)
     with pytest.raises(AssertionError, match="planar is flown again"):
         list(rows)
+
+
+def test_pages_of_scenes_that_are_recorded_are_not_measured_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[str] = []
+
+    def page_of(name: str, _is_quick: bool) -> Iterator[Row]:
+        made.append(name)
+        yield Row(name, "page", 30.0, "dB")
+
+    monkeypatch.setattr(model_sizes, "_page_of", page_of)
+    of_planar = recorded_rows("model-size", Path("docs/benchmarks"), is_quick=False)
+    of_planar = tuple(row for row in of_planar if row.scene not in model_sizes.FURTHER_SCENES)
+    recorded = (*of_planar, Row("curved", "page", 29.0, "dB"))
+    rows = list(model_sizes.measure(Context(False, Path("docs/benchmarks"), recorded)))
+    assert rows[: len(recorded)] == list(recorded)
+    assert made == [row.scene for row in rows[len(recorded) :]] == ["court", "concrete"]
 
 
 def test_flights_whose_worth_is_recorded_are_not_flown_again(monkeypatch: pytest.MonkeyPatch) -> None:

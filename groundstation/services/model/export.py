@@ -141,9 +141,10 @@ def export_model(folder: Path, out: Path, export: ModelExport, monitor: Monitor 
         return _ifc(folder, out)
     exporter = model_exporter(export.format)
     whole, trained = _read(folder, monitor)
-    scene, notes = _shown(whole, trained, export, exporter, monitor)
+    degree = exporter.degree if export.degree is None else export.degree
+    scene, notes = _shown(whole, trained, export, exporter, degree, monitor)
     attributes, rows = _records(folder)
-    notes += exporter.write(ModelToExport(scene, trained, folder, out, export, attributes, rows, monitor))
+    notes += exporter.write(ModelToExport(scene, trained, folder, out, export, degree, attributes, rows, monitor))
     return WrittenModel(out, _size(out), tuple(notes))
 
 
@@ -168,6 +169,8 @@ class ModelToExport:
         Where the model lies, for what is beside it.
     out
         The file or folder to write.
+    degree
+        Of the harmonics of colours.
     attributes, rows
         Records of panels: attributes by object, and all records as plain rows.
     """
@@ -177,13 +180,10 @@ class ModelToExport:
     folder: Path
     out: Path
     wanted: ModelExport
+    degree: int
     attributes: Mapping[str, Mapping[str, Any]]
     rows: tuple[Mapping[str, Any], ...]
     monitor: Monitor
-
-    def degree(self, usual: int) -> int:
-        """The one asked for, else the format's own."""
-        return usual if self.wanted.degree is None else self.wanted.degree
 
 
 def _read(folder: Path, monitor: Monitor) -> tuple[GsScene, TrainedModel]:
@@ -195,7 +195,7 @@ def _read(folder: Path, monitor: Monitor) -> tuple[GsScene, TrainedModel]:
 
 
 def _shown(
-    whole: GsScene, trained: TrainedModel, export: ModelExport, exporter: ModelExporter, monitor: Monitor
+    whole: GsScene, trained: TrainedModel, export: ModelExport, exporter: ModelExporter, degree: int, monitor: Monitor
 ) -> tuple[GsScene, list[str]]:
     """The components that are wanted, with what panels show in their colours."""
     from reconstruction.exports.mesh import baked, needs_baking
@@ -217,9 +217,12 @@ def _shown(
                 say("what this method's shading adds is not in the file: its Gaussians have their own colours only")
             )
     elif export.baked:
-        scene = baked(scene, trained.model, monitor)
+        scene = baked(scene, trained.model, degree, monitor)
         notes.append(
-            say("mirrored light is in the colours, as harmonics of degree 3: blurred, and it stays on the panes")
+            say(
+                "mirrored light is in the colours, as harmonics of degree {}: blurred, and it stays on the panes",
+                degree,
+            )
         )
     else:
         notes.append(say("panels show their own colour only, and mirror nothing"))
@@ -269,7 +272,7 @@ def _web(export: ModelToExport) -> list[str]:
                 return None
 
         options = WebOptions(
-            degree=export.degree(2),
+            degree=export.degree,
             is_baked=export.wanted.baked,
             mirrors=mirrors,
             sky=sky_light(export.trained.model.sky),
@@ -296,7 +299,7 @@ def _gltf(export: ModelToExport) -> list[str]:
     from reconstruction.exports.gltf import GltfOptions, write_gltf
 
     gaussians = export.wanted.gaussians or "numbers"
-    options = GltfOptions(sh_degree=export.degree(3), gaussians=gaussians, compression=_compression(export))
+    options = GltfOptions(sh_degree=export.degree, gaussians=gaussians, compression=_compression(export))
     write_gltf(export.scene, export.out, options, export.attributes, export.monitor)
     return []
 
@@ -306,9 +309,7 @@ def _tiles(export: ModelToExport) -> list[str]:
 
     place: Literal["earth", "local"] = "local" if export.scene.origin is None else "earth"
     gaussians = export.wanted.gaussians or "spz"
-    options = TilesOptions(
-        sh_degree=export.degree(3), place=place, gaussians=gaussians, compression=_compression(export)
-    )
+    options = TilesOptions(sh_degree=export.degree, place=place, gaussians=gaussians, compression=_compression(export))
     write_tiles(export.scene, export.out, options, export.attributes, export.monitor)
     notes: list[str] = (
         [] if place == "earth" else [say("the place on Earth is not known: tiles stay in the site's own frame")]
@@ -319,14 +320,14 @@ def _tiles(export: ModelToExport) -> list[str]:
 def _usd(export: ModelToExport) -> list[str]:
     from reconstruction.exports.usd import UsdOptions, write_usd
 
-    write_usd(export.scene, export.out, UsdOptions(sh_degree=export.degree(3)), export.attributes, export.monitor)
+    write_usd(export.scene, export.out, UsdOptions(sh_degree=export.degree), export.attributes, export.monitor)
     return []
 
 
 def _ply(export: ModelToExport, kind: Literal["2dgs", "3dgs"] = "3dgs") -> list[str]:
     from reconstruction.exports.ply_export import write_ply
 
-    done = write_ply(export.scene, export.out, kind, degree=export.degree(3), monitor=export.monitor)
+    done = write_ply(export.scene, export.out, kind, degree=export.degree, monitor=export.monitor)
     return _left_out(done)
 
 
@@ -379,6 +380,8 @@ class ModelExporter:
         Whether Gaussians, with their colours, are written; otherwise panels alone.
     has_gaussians
         Whether Gaussians can be written in other ways than as numbers.
+    degree
+        Of the harmonics of colours, where no other is asked for.
     """
 
     endings: tuple[str, ...]
@@ -392,6 +395,7 @@ class ModelExporter:
     has_parts: bool = True
     has_colours: bool = True
     has_gaussians: bool = False
+    degree: int = 3
 
     def takes(self, name: str, gaussians: Gaussians | None) -> bool:
         """Whether a parameter of `ModelExport` changes what is written, with Gaussians in this way."""
@@ -422,6 +426,7 @@ EXPORTERS: dict[str, ModelExporter] = {
         "yes",
         "yes",
         "all records",
+        degree=2,
     ),
     "gltf": ModelExporter(
         (".glb",),
@@ -570,7 +575,7 @@ def _compression(export: ModelToExport) -> Compression:
     from reconstruction.exports.compression import PRESETS
 
     found = PRESETS[export.wanted.preset]
-    return replace(found, degree=export.degree(found.degree))
+    return replace(found, degree=export.degree)
 
 
 def _left_out(done: Compressed) -> list[str]:

@@ -1,4 +1,9 @@
-"""Transients while splats are learned: errors of blocks as training sees them, and what of photos counts."""
+"""Transients while splats are learned: errors of blocks as training sees them, and what of photos counts.
+
+Of large photos a step looks at windows, and a block may come up once in a long time. Its error then is that of a model
+that had learned less, and compared with later ones of its place it looks like something that one photo alone shows. So
+an error counts the less the older it is, and is told nothing by at all once it is too old.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +32,10 @@ from reconstruction.splats.rasterising.views import View
 from reconstruction.training.photos.photo_stream import Sample
 
 NEW_SHARE = 0.3
-"""Of a new look in a block's error."""
+"""Of a new look in a block's error, at least: after a long time it is more."""
+
+FRESH = 0.5
+"""Share of what a training has gone through, at which a block was last seen, if its error is to tell anything."""
 
 FAR_M = 1e4
 
@@ -53,6 +61,8 @@ class Transients(nn.Module):
         n = len(self.blocks)
         self.errors: Tensor
         self.register_buffer("errors", torch.full((n,), UNSEEN))
+        self.seen_at: Tensor
+        self.register_buffer("seen_at", torch.zeros(n))
         self.points: Tensor
         self.register_buffer("points", torch.zeros(n, 3))
         self.on_glass: Tensor
@@ -73,13 +83,15 @@ class Transients(nn.Module):
         )
 
     @torch.no_grad()
-    def see(self, sample: Sample, display: Tensor, depths: Tensor) -> None:
+    def see(self, sample: Sample, display: Tensor, depths: Tensor, progress: float) -> None:
         """What a step showed in the place of a sample.
 
         Parameters
         ----------
         display, depths
             SRGB values, shape (h, w, 3), and depths of surfaces along the optical axis, shape (h, w), infinite for sky.
+        progress
+            Of the training, 0 to 1.
         """
         height, width = depths.shape
         of_pixels = self.blocks.of_window(sample.number, sample.x_px, sample.y_px, width, height)
@@ -94,9 +106,10 @@ class Transients(nn.Module):
         side = int(self.blocks.sides_px[sample.number])
         seen = np.flatnonzero(2 * counts >= side * side)
         of_blocks = first + seen
-        held = self.errors.numpy()
+        held, seen_at = self.errors.numpy(), self.seen_at.numpy()
         before = held[of_blocks]
-        held[of_blocks] = np.where(before == UNSEEN, found[seen], before + NEW_SHARE * (found[seen] - before))
+        share = np.where(before == UNSEEN, 1.0, np.maximum(NEW_SHARE, 1.0 - seen_at[of_blocks] / max(progress, 1e-9)))
+        held[of_blocks], seen_at[of_blocks] = before + share * (found[seen] - before), progress
         # Of several pixels of a block the last one tells where it is.
         every = max(1, side // 4)
         rows, columns = np.mgrid[every // 2 : height : every, every // 2 : width : every]
@@ -120,14 +133,17 @@ class Transients(nn.Module):
         is_first = float(self.share) == UNSEEN
         if not self.are_looked_for(setting) or not (is_first or int(self.n_looks) % len(self.blocks.shapes) == 0):
             return
-        are, known = np.zeros(len(self.blocks), np.bool_), np.flatnonzero(self.errors.numpy() != UNSEEN)
+        is_known = (self.errors.numpy() != UNSEEN) & (self.seen_at.numpy() >= FRESH * progress)
+        are, known = np.zeros(len(self.blocks), np.bool_), np.flatnonzero(is_known)
         errors, photos = self.errors.numpy()[known].astype(float), self.blocks.photos[known]
         places = places_of(self.points.numpy()[known], self.on_glass.numpy()[known].astype(np.int64), photos)
         if is_first:
             self.share.fill_(evidence(errors, places, photos))
         if self.are_looked_for(setting):
             are[known] = transients(errors, places, photos)
-            self.left_out.copy_(torch.from_numpy(self.blocks.with_neighbours(are)))
+            # Of blocks that were not seen lately it stays as it was.
+            found = self.blocks.with_neighbours(are) | (self.left_out.numpy() & ~is_known)
+            self.left_out.copy_(torch.from_numpy(found))
         else:
             self.left_out.zero_()
 

@@ -77,6 +77,26 @@ def test_pictures_without_mirroring_come_nearer_to_those_with_it(trained, data_s
     assert errors["baked"] < 0.5 * errors["dull"]
 
 
+@pytest.mark.slow
+@torch.no_grad()
+def test_colours_of_a_lower_degree_are_fitted_with_it_and_nearer_than_those_that_are_cut(trained):
+    scene = organised(trained)
+    fine, fitted = (baked(scene, trained.model, degree).components[0].gaussians for degree in (3, 2))
+    assert not fitted.values["sh"][:, 9:].any()
+    means = torch.from_numpy(fine.values["means"])
+    cut = fine.values["sh"].copy()
+    cut[:, 9:] = 0.0
+    errors = {"cut": 0.0, "fitted": 0.0}
+    for eye in ([0.0, -30.0, 3.0], [12.0, -20.0, 9.0], [-15.0, -12.0, 2.0]):
+        shown, *others = (
+            display_colours(means, torch.from_numpy(sh), torch.tensor(eye), 3)
+            for sh in (fine.values["sh"], cut, fitted.values["sh"])
+        )
+        for name, other in zip(errors, others, strict=True):
+            errors[name] += float(((other - shown) ** 2).mean())
+    assert errors["fitted"] < 0.7 * errors["cut"]
+
+
 def test_only_panels_change_and_parts_of_a_scene_will_do(trained):
     scene = organised(trained)
     before = scene.components[0].gaussians.values["sh"].copy()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from reconstruction.light.transients import TRIED, UNSEEN
+from reconstruction.light.transients import LEAST_ERROR, TRIED, UNSEEN
 from reconstruction.splats.rasterising.views import View
 from reconstruction.training.config import LossWeights
 from reconstruction.training.model.joint_model import Picture
@@ -42,7 +42,7 @@ def looked_at(persons, setting, window=(0, 0, WIDTH, HEIGHT)):
     samples = [sample_of(number, display, window) for number, display in enumerate(displays(persons))]
     for _ in range(3):
         for sample in samples:
-            transients.see(sample, shown[y : y + height, x : x + width], torch.full((height, width), 5.0))
+            transients.see(sample, shown[y : y + height, x : x + width], torch.full((height, width), 5.0), TRIED - 0.1)
     transients.settle(setting, TRIED - 0.01)
     assert float(transients.share) == UNSEEN
     transients.settle(setting, TRIED)
@@ -76,11 +76,44 @@ def test_they_are_left_out_where_they_are_enough_to_be_worth_it(persons, is_on):
     assert all((transients.lasting(sample) is None) is not is_on for sample in samples)
 
 
+@pytest.mark.parametrize(("persons", "is_on"), [([], False), (range(N_PHOTOS), True)])
+def test_what_was_seen_of_a_model_that_had_hardly_begun_is_no_evidence(persons, is_on):
+    transients, rng = Transients([(WIDTH, HEIGHT)] * N_PHOTOS), np.random.default_rng(0)
+    truth = displays(persons)
+    progresses = np.linspace(0.0, TRIED, 401)
+    for progress in progresses:
+        # Windows of a sixteenth, as trainings look at large photos, of a model that is darker the less it has learned.
+        number, x, y = int(rng.integers(N_PHOTOS)), int(rng.integers(49)), int(rng.integers(37))
+        shown = torch.full((12, 16, 3), 120 / 255 * (1.0 - np.exp(-20.0 * progress)))
+        transients.see(
+            sample_of(number, truth[number], (x, y, 16, 12)), shown, torch.full((12, 16), 5.0), float(progress)
+        )
+    transients.settle("auto", TRIED)
+    assert transients.decision("auto", 100.0).on is is_on
+    assert (float(transients.share) > 0.05) is is_on
+
+
+def test_a_block_that_comes_up_again_after_long_has_the_error_of_then_and_stays_left_out_until_it_does():
+    transients, sample = Transients([(WIDTH, HEIGHT)] * N_PHOTOS), sample_of(0, displays([])[0])
+    depths = torch.full((HEIGHT, WIDTH), 5.0)
+    for level, progress in ((0.0, 0.01), (120 / 255, TRIED)):
+        transients.see(sample, torch.full((HEIGHT, WIDTH, 3), level), depths, progress)
+    assert float(transients.errors[:48].max()) < LEAST_ERROR
+    transients.left_out[3] = True
+    transients.settle("on", 0.95)  # at which all was seen long ago
+    assert bool(transients.left_out[3])
+    transients.see(sample, torch.full((HEIGHT, WIDTH, 3), 120 / 255), depths, 0.95)
+    for _ in range(2 * N_PHOTOS - 3):  # until all is settled again
+        transients.see(sample, torch.full((HEIGHT, WIDTH, 3), 120 / 255), depths, 0.96)
+    transients.settle("on", 0.96)
+    assert not bool(transients.left_out[3])
+
+
 def test_nothing_is_too_bright_for_a_photo_that_is_overexposed():
     transients, white = Transients([(WIDTH, HEIGHT)] * N_PHOTOS, white=0.9), torch.full((HEIGHT, WIDTH, 3), 255)
     for number in range(N_PHOTOS):
         brighter = torch.full((HEIGHT, WIDTH, 3), 1.0 + 0.5 * (number % 2))
-        transients.see(sample_of(number, white.to(torch.uint8)), brighter, torch.full((HEIGHT, WIDTH), 5.0))
+        transients.see(sample_of(number, white.to(torch.uint8)), brighter, torch.full((HEIGHT, WIDTH), 5.0), TRIED)
     assert not transients.errors.any()
 
 
@@ -97,7 +130,7 @@ def test_what_learning_light_found_holds_until_splats_say_otherwise():
     transients = Transients([(WIDTH, HEIGHT)] * N_PHOTOS, known)
     sample = sample_of(0, displays([])[0])
     assert not transients.lasting(sample)[:8, 40:48].any()
-    transients.see(sample, torch.full((HEIGHT, WIDTH, 3), 120 / 255), torch.full((HEIGHT, WIDTH), 5.0))
+    transients.see(sample, torch.full((HEIGHT, WIDTH, 3), 120 / 255), torch.full((HEIGHT, WIDTH), 5.0), 1.0)
     transients.settle("auto", 1.0)
     assert transients.lasting(sample) is None
     assert not Transients([(WIDTH, HEIGHT)], known).left_out.any()  # of photos of another size
