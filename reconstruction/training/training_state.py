@@ -394,7 +394,8 @@ class TrainingState:
             self.model.load(state["model"], state["empty places"])
             self.exposures.load_state_dict(state["exposures"])
             self.poses.load_state_dict(state["poses"])
-            self.transients.load_state_dict(state["transients"])
+            # Of states before looks had a date all are old, and told nothing by.
+            self.transients.load_state_dict(state["transients"], strict=False)
             self.optimiser = adam_of(self.model, self.exposures, self.poses, self.config, self._extent_m)
             self.optimiser.load_state_dict(state["adam"])
             self.photos.load_state_dict(state["photos"])
