@@ -121,6 +121,11 @@ class LocalZone:
         return (*self.zone.place_questions, *widths, *self.place_questions)
 
     @property
+    def is_unsure(self) -> bool:
+        """Whether anything is open about where it lies."""
+        return bool(self.open_places) or not self.volumes or self.doubtful is not None
+
+    @property
     def all_questions(self) -> tuple[str, ...]:
         """Whatever is open about it."""
         zone = self.zone
