@@ -288,6 +288,22 @@ def test_a_file_of_another_place_asks_whether_it_is_the_right_one():
     assert "exchanged" in one(zone_findings(FORMATS["ed269"](swapped)), "zones-far").message
 
 
+def test_one_zone_of_a_file_with_latitude_and_longitude_exchanged_is_an_open_question_and_far_ones_are_not():
+    good, swapped = ed269_volume(polygon(ASIDE)), ed269_volume(polygon([[lat, lon] for lon, lat in square(0, 0, 90)]))
+    elsewhere = ed269_volume(polygon([[lat, lon] for lon, lat in square(9000.0, 0.0, 90.0)]))
+    content = ed269(
+        ed269_feature(good),
+        ed269_feature(swapped, identifier="Z2"),
+        ed269_feature(elsewhere, identifier="Z3"),
+        ed269_feature({**swapped, "horizontalProjection": {"type": "Circle", "center": [47.0, 8.0], "radius": 90}},
+                      identifier="Z4"),
+    )  # fmt: skip
+    asked = [f for f in zone_findings(content) if f.code == "zone-question"]
+    assert [(f.place, f.severity) for f in asked] == [("Z2", Severity.ERROR), ("Z4", Severity.ERROR)]
+    assert "here if its latitude and longitude are exchanged" in asked[0].message
+    assert not [f for f in zone_findings(content, not_here={"Z2": "Town", "Z4": "Town"}) if f.code == "zone-question"]
+
+
 def test_old_sources_and_those_that_ended_are_warnings():
     model = with_zones(FORMATS["ed318"](ASIDE))
     assert not list(source_ages(model, NOON))
