@@ -153,8 +153,8 @@ class FlightBrief:
 
         risk = self.ground_risk
         if risk is not None:
-            how = {"how_intrinsic": localize(risk.how_intrinsic), "how_final": localize(risk.how_final)}
-            risk = replace(risk, **how)
+            how_intrinsic, how_final = localize(risk.how_intrinsic), localize(risk.how_final)
+            risk = replace(risk, how_intrinsic=how_intrinsic, how_final=how_final)
         return replace(
             self,
             ground_risk=risk,

@@ -133,7 +133,8 @@ def permit(model: SiteModel, zone_id: str, reference: str, file: str = "") -> Si
         No file of the site has such a zone, or several have.
     """
     for before, zone in _of_zone(model, zone_id, file):
-        model = _stated(model, before, permitted=_with_reference(before.permitted, zone.id, reference))
+        source = replace(before, permitted=_with_reference(before.permitted, zone.id, reference))
+        model = _with_source(model, before, source)
     return model
 
 
@@ -157,7 +158,8 @@ def not_here(model: SiteModel, zone_id: str, reference: str, file: str = "") -> 
             of_zone[0][1].id,
         )
     for before, zone in of_zone:
-        model = _stated(model, before, not_here=_with_reference(before.not_here, zone.id, reference))
+        source = replace(before, not_here=_with_reference(before.not_here, zone.id, reference))
+        model = _with_source(model, before, source)
     return model
 
 
@@ -187,8 +189,7 @@ def _with_reference(stated: Mapping[str, str], zone_id: str, reference: str) -> 
     return {**others, zone_id: reference.strip()} if reference.strip() else others
 
 
-def _stated(model: SiteModel, before: ZoneFile, **changed: Mapping[str, str]) -> SiteModel:
-    source = replace(before, **changed)
+def _with_source(model: SiteModel, before: ZoneFile, source: ZoneFile) -> SiteModel:
     found = next(each for each in model.zones if each.source == before)
     return _with_sources(model, source, before, replace(found, source=source))
 
