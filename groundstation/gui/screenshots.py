@@ -220,6 +220,8 @@ class _Tour(QObject):
     def _planned(self) -> None:
         page = self._page("plan", PlanPage)
         lists, panels = page.lists, self._opened_site().site.panels
+        assert isinstance(page.right, QTabWidget)
+        page.right.setCurrentWidget(page.chart)
         for paint in PanelPaint:
             page.paint.setValue(paint, RoutePaint.CLEARANCE if paint is PanelPaint.FACADE else RoutePaint.SORTIE)
             self._take(f"plan-{paint.value}")
@@ -227,7 +229,6 @@ class _Tour(QObject):
         self._context.jump_to(Item(ItemKind.PANEL, panels[len(panels) // 3].id))
         page.panel.pick_section(8)
         self._take("plan-panel")
-        assert isinstance(page.right, QTabWidget)
         page.right.setCurrentWidget(page.effects)
         for widget, name in ((lists.reach, "not-covered"), (lists.clearance, "clearance"), (lists.plans, "plans")):
             lists.setCurrentWidget(widget)
