@@ -117,7 +117,12 @@ def _actions(actions: Sequence[Action], config: MissionConfig, where: str, *, is
 
 def _function(action: Action, config: MissionConfig, place: str) -> Iterator[Finding]:
     if action.func not in FUNCS:
-        yield Finding(WARNING, "action-function", say("'{}' is not a documented action", action.func), place)
+        text = say(
+            "'{}' is no action that DJI documents: plans made of this mission go without it, and an aircraft may "
+            "refuse it",
+            action.func,
+        )
+        yield Finding(WARNING, "action-function", text, place)
     if "payloadPositionIndex" in action.params:
         position = action.number("payloadPositionIndex")
         if position not in {position for _, position in config.payloads}:

@@ -144,7 +144,7 @@ def _read_item(item: Any, place: str) -> list[MissionItem]:
         if not generated:
             raise MissionError.say(
                 "the complex item '{}' does not hold the items it generates, which only QGroundControl can make; "
-                "turn it into simple items there",
+                "load it there, send it to a vehicle or a simulator, receive it again as simple items, and save those",
                 name,
                 place=place,
             )

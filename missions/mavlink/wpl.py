@@ -7,11 +7,12 @@ the autopilot. Lines end in \n, because MAVSDK reads no others; Mission Planner'
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from pymavlink.dialects.v20 import common as mavlink
 
-from missions.mavlink.items import MavlinkFile, MissionItem, home_of
+from missions.mavlink.items import MavlinkFile, MissionItem, has_place, home_of
 from missions.mission.model import GeoPoint, altitude_amsl_m
 from missions.mission.safe_files import MAX_LINES, read_limited
 from planning.base.errors import MissionError
@@ -84,7 +85,28 @@ def read_wpl(path: Path) -> MavlinkFile:
     if kept and header[1] == HOME_IN_LINE_0 and kept[0].command in (0, mavlink.MAV_CMD_NAV_WAYPOINT):
         home, on_home = home_of(*kept.pop(0).params[4:])
         findings += on_home
+    elif kept and header[1] == HOME_IN_LINE_0:
+        findings += tuple(_misplaced_home(kept))
     return MavlinkFile(tuple(kept), home, findings=findings)
+
+
+def _misplaced_home(items: Sequence[MissionItem]) -> Iterator[Finding]:
+    """The one waypoint above sea level of a mission above take-off, where home is missing from line 0: home is so."""
+    placed = [(number, item) for number, item in enumerate(items) if has_place(item)]
+    above_sea = [
+        (number, item)
+        for number, item in placed
+        if item.frame == mavlink.MAV_FRAME_GLOBAL and item.command == mavlink.MAV_CMD_NAV_WAYPOINT
+    ]
+    if len(above_sea) == 1 and len(placed) > 2:
+        number, item = above_sea[0]
+        text = say(
+            "item {} looks like home, which belongs into line 0: where it stands, vehicles fly to it, {:.0f} m above "
+            "sea level; if it is home, make it line 0 and number the others anew",
+            number,
+            item.params[6],
+        )
+        yield Finding(Severity.WARNING, "home", text)
 
 
 def _read_line(line: str, place: str) -> tuple[int, MissionItem]:

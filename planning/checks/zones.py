@@ -114,7 +114,8 @@ def open_zone(near: NearZone, open_places: Sequence[str]) -> str:
     """What is open about the place of a zone, from which file, and what to do about it."""
     return say(
         "{}: where it lies cannot be read for sure in '{}': {}. So nobody can say that flights stay out of it. Look it "
-        "up, or ask {}; then add the corrected file, or state who answered what (--permit)",
+        "up, or ask {}; then add the corrected file, or state who says that it is not here (--not-here): flights keep "
+        "out of what can be read of it all the same. A permission (--permit) opens all of it",
         zone_text(near),
         near.source.file,
         joined("; ", open_places),
@@ -128,19 +129,25 @@ def _authority(zone: Zone) -> str:
 
 def _zone(near: NearZone, case: Case) -> Iterator[Finding]:
     zone, local = near.local.zone, near.local
-    what, open_places = zone_text(near), _open_places(near, case)
+    what, unsure = zone_text(near), _unsure_places(near, case)
     away_m, place = path_distance_m(local, case)
     if zone.restriction is Restriction.NONE:
         yield Finding(Severity.NOTE, "zone", say("{}: it restricts nothing", what), zone.id)
     elif near.state is State.NOT_THEN:
         yield Finding(Severity.NOTE, "zone", say("{}: it does not apply at the planned time", what), zone.id)
-    elif near.permitted and away_m > ROUNDING_M and (local.open_places or not local.volumes):
-        text = say("{}: where it lies is not sure; answered by '{}'", what, near.permitted)
+    elif near.permitted and away_m > ROUNDING_M and (unsure or not local.volumes):
+        text = say("{}: where it lies is not sure; the authorisation '{}' opens all of it", what, near.permitted)
+        if local.volumes:
+            other = say("if it only says that the zone is not here, state it so instead (--not-here)")
+            text = glue(text, "; ", other)
         yield Finding(Severity.NOTE, "zone", text, zone.id)
-    elif open_places and away_m > ROUNDING_M:
-        yield Finding(Severity.ERROR, "zone-question", open_zone(near, open_places), zone.id)
+    elif near.not_here and not local.volumes:
+        text = say("{}: where it lies is not sure; it is not here according to '{}'", what, near.not_here)
+        yield Finding(Severity.NOTE, "zone", text, zone.id)
+    elif unsure and not near.not_here and away_m > ROUNDING_M:
+        yield Finding(Severity.ERROR, "zone-question", open_zone(near, unsure), zone.id)
     elif local.volumes:
-        yield _distance(near, case, what, away_m, place, open_places)
+        yield _distance(near, case, what, away_m, place, unsure)
     else:
         text = say(
             "{}: it lies some {:.0f} m away, but how far it reaches is not known: {}; look it up",
@@ -151,11 +158,17 @@ def _zone(near: NearZone, case: Case) -> Iterator[Finding]:
         yield Finding(Severity.WARNING, "zone-question", text, zone.id)
 
 
-def _open_places(near: NearZone, case: Case) -> tuple[str, ...]:
-    """`NearZone.open_places`, and outlines that cross themselves where the path lies within their hull."""
-    if near.is_kept and near.local.doubtful is not None and any(map(near.local.doubtful.intersects, _tracks(case))):
-        return (*near.open_places, *near.local.questions)
-    return near.open_places
+def answer_text(near: NearZone) -> str:
+    """What somebody says of the place of a zone that cannot be read for sure."""
+    return say("what cannot be read of it is not here according to '{}'", near.not_here)
+
+
+def _unsure_places(near: NearZone, case: Case) -> tuple[str, ...]:
+    """What is open of a zone's place, answered or not; outlines that cross themselves with the path in their hull."""
+    local = near.local
+    if local.doubtful is not None and any(map(local.doubtful.intersects, _tracks(case))):
+        return (*local.open_places, *local.questions)
+    return local.open_places
 
 
 def _tracks(case: Case) -> list[Any]:
@@ -167,11 +180,12 @@ def _tracks(case: Case) -> list[Any]:
     return [shapely.LineString(path[:, :2]) for _, _, path in case.sorties()]
 
 
-def _distance(near: NearZone, case: Case, what: str, away_m: float, place: str, open_places: Sequence[str]) -> Finding:
+def _distance(near: NearZone, case: Case, what: str, away_m: float, place: str, unsure: Sequence[str]) -> Finding:
     """How far the path stays away from a zone that applies, or may."""
     zone, local = near.local.zone, near.local
     where = glue(zone.id, ", ", place) if place and away_m <= 0.0 else zone.id
-    questions = [*zone.questions, *dict.fromkeys((*open_places, *local.questions))]
+    questions = [*zone.questions, *dict.fromkeys((*unsure, *local.questions))]
+    answers = [answer_text(near)] if unsure and near.not_here else []
     if near.state is State.UNDECIDED:
         questions.append(
             say("when it applies cannot be read")
@@ -180,11 +194,12 @@ def _distance(near: NearZone, case: Case, what: str, away_m: float, place: str, 
         )
     if math.isinf(away_m):
         text = say("{}: there is no path yet, so how near it comes is not known", what)
-        return Finding(Severity.NOTE, "zone", text, where)
+        return Finding(Severity.NOTE, "zone", joined("; ", [text, *answers]), where)
     if away_m > ROUNDING_M:
         below, crossed = _crossed(local, case)
-        severity = Severity.NOTE if away_m < NEAR_MISS_M or below else Severity.OK
+        severity = Severity.NOTE if away_m < NEAR_MISS_M or below or answers else Severity.OK
         text = say("{}: the path stays out of it, {:.1f} m away", what, away_m)
+        text = joined("; ", [text, *answers])
         if below:
             text = glue(text, "; ", say("all of it lies below the ground here: is its upper limit right?"))
         if counted := _counted_from(crossed, case):
@@ -192,12 +207,11 @@ def _distance(near: NearZone, case: Case, what: str, away_m: float, place: str, 
         return Finding(severity, "zone", text, where, away_m, 0.0, "m")
     if near.permitted:
         text = say("{}: the path runs inside, by the authorisation '{}'", what, near.permitted)
-        return Finding(Severity.NOTE, "zone", text, where, away_m, 0.0, "m")
-    text = say("{}: the path enters it", what)
-    for question in questions:
-        text = glue(text, "; ", question)
+        return Finding(Severity.NOTE, "zone", joined("; ", [text, *questions]), where, away_m, 0.0, "m")
+    entered = say("{}: the path enters it", what)
     advice = say("plan again, or ask {} and state the authorisation (--permit)", _authority(zone))
-    return Finding(Severity.ERROR, "zone", glue(text, "; ", advice), where, away_m, 0.0, "m")
+    text = joined("; ", [entered, *questions, *answers, advice])
+    return Finding(Severity.ERROR, "zone", text, where, away_m, 0.0, "m")
 
 
 def path_distance_m(local: LocalZone, case: Case) -> tuple[float, str]:

@@ -19,7 +19,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, field
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,11 +27,11 @@ import numpy as np
 from planning.aircraft.catalogue import Body, profiles
 from planning.base.errors import InfeasibleError, InputError
 from planning.base.findings import Finding, Severity
-from planning.base.json_file import read_toml
 from planning.base.messages import joined, say
 from planning.geo.height_field import HeightField
 from planning.insight.falling import drag_per_m, fall_s, longest_fall_s, reach_m
-from planning.insight.ground_risk_request import Band, GroundRiskRequest, Robustness
+from planning.insight.ground_risk_class import PeopleBand, band_of, ground_risk_tables, risk_classes
+from planning.insight.ground_risk_request import GroundRiskRequest
 from planning.insight.population import People, open_population, people_below
 from planning.plan import Plan
 from planning.site.ground import Ground, ground_of
@@ -68,68 +67,6 @@ ADJACENT_S, ADJACENT_LEAST_M, ADJACENT_MOST_M = 180.0, 5_000.0, 35_000.0
 
 HIGHEST_M = 120.0
 """Above it other rules of the air hold in most places (EU 2019/947, UAS.OPEN.010)."""
-
-# The tables of `data/ground_risk.toml`.
-
-
-@dataclass(frozen=True, slots=True)
-class Column:
-    """A size class: up to which dimension and speed, and the frontal area of its largest aircraft when it falls."""
-
-    dimension_m: float
-    speed_m_s: float
-    frontal_area_m2: float
-
-
-@dataclass(frozen=True, slots=True)
-class PeopleBand:
-    """A row of Table 2: its word, how many people there are fewer of, and the class of each column; 0 beyond SORA."""
-
-    word: Band
-    below_per_km2: float
-    classes: tuple[int, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Grid:
-    """Side of the cells in which people are counted, for flights up to a height above the ground."""
-
-    height_m: float
-    side_m: float
-
-
-@dataclass(frozen=True, slots=True)
-class GroundRiskTables:
-    """See `data/ground_risk.toml`."""
-
-    source: str
-    grid_source: str
-    grids: tuple[Grid, ...]
-    mitigation_source: str
-    drag_coefficient: float
-    drag_source: str
-    columns: tuple[Column, ...]
-    bands: tuple[PeopleBand, ...]
-    mitigations: dict[str, dict[Robustness, int]]
-
-    def column_of(self, dimension_m: float, speed_m_s: float) -> int | None:
-        """Number of the size class from 0; None where the aircraft is beyond all."""
-        fits = (dimension_m <= each.dimension_m and speed_m_s <= each.speed_m_s for each in self.columns)
-        return next((number for number, fit in enumerate(fits) if fit), None)
-
-
-@cache
-def ground_risk_tables() -> GroundRiskTables:
-    """The tables of SORA."""
-    return read_toml(Path(__file__).parent / "data" / "ground_risk.toml", GroundRiskTables)
-
-
-def band_of(population: str) -> PeopleBand:
-    """The band of a word, or of a number of people per square kilometre that `GroundRiskRequest` takes."""
-    bands = ground_risk_tables().bands
-    named = next((band for band in bands if band.word == population), None)
-    return named or next(band for band in bands if float(population) < band.below_per_km2)
-
 
 # Quantities: each number with where it comes from.
 
@@ -180,6 +117,8 @@ class GroundRisk:
         What a population raster says of the buffer; None without one. It makes the band where nobody stated people.
     ground
         What lies below; with terrain, the buffer is as wide as the height above it asks for at each place.
+    how_intrinsic, how_final
+        How the classes came about: what went into which table; "" where there is no class.
     """
 
     request: GroundRiskRequest
@@ -196,6 +135,8 @@ class GroundRisk:
     findings: tuple[Finding, ...]
     people: People | None = None
     ground: Ground = field(default_factory=lambda: Ground(0.0))
+    how_intrinsic: str = ""
+    how_final: str = ""
 
     def value_of(self, symbol: str) -> float:
         """One of the numbers.
@@ -343,8 +284,12 @@ def assess_ground_risk(
         band = band_of(f"{people.most_per_km2}")
     if people is not None:
         quantities = (*quantities, *_people_quantities(people))
-    column = ground_risk_tables().column_of(body.characteristic_dimension_m, body.full_speed_m_s)
-    intrinsic, final = _classes(band, column, request)
+    known = known_body(plan)
+    # A mode that limits the speed lasts only as long as the aircraft obeys (AMC1 Article 11, S.4.2.4 (b)).
+    speed_m_s = max(body.full_speed_m_s, 0.0 if known is None else known.full_speed_m_s)
+    column = ground_risk_tables().column_of(body.characteristic_dimension_m, speed_m_s)
+    classes = None if band is None or column is None else risk_classes(band, column, body, speed_m_s, request)
+    intrinsic, final = (None, None) if classes is None else (classes.intrinsic, classes.final)
     return GroundRisk(
         request=request,
         body=body,
@@ -357,6 +302,8 @@ def assess_ground_risk(
         band=band,
         intrinsic_class=intrinsic,
         final_class=final,
+        how_intrinsic="" if classes is None else classes.how_intrinsic,
+        how_final="" if classes is None else classes.how_final,
         findings=(
             *_findings(request, plan, value, band, column, intrinsic, final),
             *_ground_findings(value, is_known),
@@ -652,17 +599,6 @@ def _buffer(
     yield Quantity("S_GRB", say("ground-risk buffer, to each side"), by_fall_m, "m", formula, ours)
 
 
-def _classes(band: PeopleBand | None, column: int | None, request: GroundRiskRequest) -> tuple[int | None, int | None]:
-    """Intrinsic and final class; no mitigation brings it below that of a controlled ground area."""
-    if band is None or column is None or not band.classes[column]:
-        return None, None
-    tables = ground_risk_tables()
-    points = sum(tables.mitigations[name].get(robustness, 0) for name, robustness in request.mitigations)
-    intrinsic = band.classes[column]
-    least = next(each for each in tables.bands if each.word == "controlled").classes[column]
-    return intrinsic, max(intrinsic - points, least)
-
-
 HIGHEST_CLASS = 7
 """Above it an operation is not in the specific category (SORA 2.5, step 3)."""
 
@@ -850,8 +786,9 @@ def source_texts(risk: GroundRisk) -> tuple[str, ...]:
     """Where the numbers are from, in full."""
     own = (say("profile: {}", risk.body.source),) if risk.body.source else ()
     text = say(
-        "formulas and tables of both were taken from public implementations that agree, and give the distances that "
-        "German authorities publish (STS-BOS 1.0, tables 1 and 2); compare them with the documents"
+        "formulas were taken from public implementations that agree, and give the distances that German authorities "
+        "publish (STS-BOS 1.0, tables 1 and 2); classes, mitigations and cells of people are those of AMC1 Article 11, "
+        "tables 1, 4 and 5; compare them with the documents"
     )
     return (*DOCUMENTS, text, *own)
 

@@ -79,8 +79,9 @@ def site_to_json(site: Site) -> dict[str, Any]:
     if content["airspace"]["min_height_above_ground_m"] is None:
         del content["airspace"]["min_height_above_ground_m"]
     for source in content.get("zones", ()):
-        if not source["permitted"]:
-            del source["permitted"]
+        for name in ("permitted", "not_here"):
+            if not source[name]:
+                del source[name]
     content["obstacles"] = [_without_none(obstacle) for obstacle in content["obstacles"]]
     for facade in content["facades"]:
         facade["panels"] = [_without_none(panel) for panel in facade["panels"]]

@@ -209,3 +209,14 @@ def test_strict_refuses_what_an_aircraft_would_refuse(reflight, shared_data, tmp
     out.unlink()
     assert "aircraft would refuse this mission" in reflight("import", path, "-o", out, "--strict").error
     assert not out.exists()
+
+
+def test_a_take_off_that_cannot_be_is_told_with_what_follows(reflight, tmp_path):
+    lines = ["0\t1\t0\t16\t0\t0\t0\t0\t-35.0\t149.0\t584\t1"]
+    lines += [f"{n}\t0\t3\t16\t0\t0\t0\t0\t47.{n}\t8.0\t30\t1" for n in (1, 2)]
+    mission = tmp_path / "m.waypoints"
+    mission.write_text("\n".join(["QGC WPL 110", *lines]).replace("47.1", "47.001").replace("47.2", "47.002"))
+    told = reflight("import", mission, "-o", tmp_path / "m.plan.json").err
+    assert "its file says that it takes off 16" in told
+    assert "km from its first waypoint, which cannot be; home is below that waypoint" in told
+    assert "does not say where it takes off" not in told

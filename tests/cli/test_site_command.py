@@ -199,3 +199,15 @@ def test_terrain_that_cannot_be_attached_is_refused_in_one_line(reflight, height
     done = reflight("site", "terrain", heights / "office.site.json", *named, "-o", tmp_path / "a.json")
     assert expected in done.error
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_kml_of_places_and_a_drawing_are_refused_with_what_to_save_instead(reflight, tmp_path):
+    kml, drawing = tmp_path / "a.kml", tmp_path / "a.dxf"
+    kml.write_text('<kml xmlns="http://www.opengis.net/kml/2.2"><Document><Placemark/></Document></kml>')
+    drawing.write_text("  0\nSECTION\n")
+    error = reflight("site", "import", kml, "-o", tmp_path / "a.site.json").error
+    assert "found a KML of places and outlines; it has no walls that could be measured: save the model itself" in error
+    error = reflight("site", "import", drawing, "-o", tmp_path / "a.site.json").error
+    assert "got '.dxf'; open it in the program that made it, and save it as one of these" in error
+    error = reflight("import", kml, "-o", tmp_path / "a.plan.json").error
+    assert "a KML of another program" in error

@@ -75,17 +75,26 @@ def test_a_zone_with_an_unreadable_corner_is_an_open_question_until_it_is_answer
     lines = openair_ring(square(0.0, -500.0, 20.0, ORIGIN))
     (place / "zones.txt").write_bytes(openair(*lines[:2], "DP 22:2x:00 N 114:15:00 E", *lines[3:]))
     listed = reflight("site", "zones", site, place / "zones.txt")
-    assert "where it lies is an open question: no flight is ready until it is answered (--permit)" in listed.out
+    assert (
+        "where it lies is an open question: no flight is ready until somebody says that it is not here (--not-here), "
+        "or permits it (--permit)"
+    ) in listed.out
     assert "question: line 'DP 22:2x:00 N 114:15:00 E' cannot be read" in listed.out
     done = reflight("check", plan, site)
     assert done.status == 1
     assert done.out.splitlines()[-1] == "not ready to fly: see the errors above"
     (told,) = (line for line in done.out.splitlines() if "School" in line)
     assert "where it lies cannot be read for sure in 'zones.txt': line 'DP 22:2x" in told
-    assert reflight("site", "zones", site, "--permit", "School=Town, by phone, 30 November").status == 0
+    listed = reflight("site", "zones", site, "--not-here", "School=Town, by phone, 30 November")
+    words = "what cannot be read of it is not here according to 'Town, by phone, 30 November'"
+    assert f"; kept out of; {words}" in listed.out
     answered = reflight("check", plan, site)
     assert answered.status == 0
-    assert "answered by 'Town, by phone, 30 November'" in answered.out
+    assert words in answered.out
+    assert reflight("site", "zones", site, "--not-here", "School=", "--permit", "School=No. 4711").status == 0
+    permitted = reflight("check", plan, site)
+    assert permitted.status == 0
+    assert "where it lies is not sure; the authorisation 'No. 4711' opens all of it" in permitted.out
 
 
 @pytest.mark.parametrize(
@@ -95,6 +104,7 @@ def test_a_zone_with_an_unreadable_corner_is_an_open_question_until_it_is_answer
         (("site.json",), "expected a file of geo-zones"),
         (("--permit", "Z1"), "expected ZONE=REFERENCE, got 'Z1'"),
         (("--permit", "Z1=x"), "no zone 'Z1'"),
+        (("--not-here", "=x"), "expected ZONE=REFERENCE, got '=x'"),
         (("--at", "noon"), "expected a time such as"),
     ],
 )

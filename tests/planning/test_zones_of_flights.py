@@ -55,9 +55,9 @@ def flight():
     return plan_flight(site(), REQUEST).plan
 
 
-def zone_findings(content, plan=None, at=None, **permitted):
+def zone_findings(content, plan=None, at=None, not_here=None, **permitted):
     """Findings about zones alone."""
-    model = at_time(with_zones(content, **permitted), at, 600.0)
+    model = at_time(with_zones(content, not_here=not_here, **permitted), at, 600.0)
     findings = check_plan(flight() if plan is None else plan, model)
     return [finding for finding in findings if finding.code.startswith("zone")]
 
@@ -138,9 +138,14 @@ def test_a_zone_of_which_the_place_is_open_is_never_clear_unless_the_pilot_has_t
     assert question.severity is Severity.ERROR
     for words in ("School", "'zones.json'", "'type' cannot be read: it is 'Ellipse'", "ask Town", "--permit"):
         assert words in question.message
-    answered = zone_findings(lost, Z1="asked by phone")
-    assert not [f for f in answered if f.code == "zone-question"]
-    assert (one(answered).severity, "'asked by phone'" in one(answered).message) == (Severity.NOTE, True)
+    told = {"Z1": "asked by phone"}
+    for answered, words in (
+        (zone_findings(lost, not_here=told), "it is not here according to 'asked by phone'"),
+        (zone_findings(lost, **told), "the authorisation 'asked by phone' opens all of it"),
+    ):
+        assert not [f for f in answered if f.code == "zone-question"]
+        assert one(answered).severity is Severity.NOTE
+        assert words in one(answered).message
 
 
 AWAY = square(0.0, -400.0, 10.0)
@@ -177,8 +182,50 @@ def test_a_zone_of_which_a_corner_is_lost_is_an_open_question_however_far_the_ot
     assert "'zones.json'" in question.message
     assert all(f.severity is not Severity.OK for f in zone_findings(content) if f.code == "zone")
     (near,) = (near for near in near_zones(with_zones(content)) if near.open_places)
-    answered = zone_findings(content, **{near.local.zone.id: "M. Muster, 28 November"})
-    assert [f.severity for f in answered if f.code in ("zone", "zone-question")] == [Severity.NOTE]
+    told = {near.local.zone.id: "M. Muster, 28 November"}
+    for answered in (zone_findings(content, not_here=told), zone_findings(content, **told)):
+        assert [f.severity for f in answered if f.code in ("zone", "zone-question")] == [Severity.NOTE]
+        assert "'M. Muster, 28 November'" in one(answered).message
+
+
+OVER = square(0.0, 0.0, 90.0)
+"""Over all of the flight; a corner more may be lost."""
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        ed269(ed269_feature(ed269_volume(polygon([*OVER[:4], [None, 47.0], OVER[4]])))),
+        ed318(polygon([*OVER[:4], [8.0, 97.0], OVER[4]])),
+        geojson({"type": "LineString", "coordinates": OVER[:2] + OVER[2:]}),
+        geojson(polygon([OVER[0], OVER[2], OVER[1], OVER[3], OVER[0]])),
+    ],
+    ids=["lost corner", "impossible corner", "no width", "crossed outline"],
+)
+def test_the_answer_that_a_zone_is_not_here_leaves_closed_what_can_be_read_of_it_and_a_permission_opens_it(content):
+    (near,) = near_zones(with_zones(content))
+    told = {near.local.zone.id: "Town, by phone"}
+    answered = with_zones(content, not_here=told)
+    assert no_fly_volumes(answered) == no_fly_volumes(with_zones(content)) != ()
+    entered = one(zone_findings(content, not_here=told))
+    assert entered.severity is Severity.ERROR
+    for words in ("the path enters it", "is not here according to 'Town, by phone'", "state the authorisation"):
+        assert words in entered.message
+    assert no_fly_volumes(with_zones(content, **told)) == ()
+    inside = one(zone_findings(content, **told))
+    assert inside.severity is Severity.NOTE
+    assert "the path runs inside, by the authorisation 'Town, by phone'" in inside.message
+
+
+@pytest.mark.parametrize("upper", ["4000 bananas", "?"])
+def test_an_authorisation_says_what_stays_open_of_heights_and_times(upper):
+    content = openair(*openair_ring(OVER), upper=upper)
+    assert one(zone_findings(content)).severity is Severity.ERROR
+    inside = one(zone_findings(content, School="No. 4711"))
+    assert inside.severity is Severity.NOTE
+    assert f"'{upper}'" in inside.message
+    # Answers about places answer nothing about heights.
+    assert one(zone_findings(content, not_here={"School": "Town"})).severity is Severity.ERROR
 
 
 def test_corners_in_the_wrong_order_are_asked_about_where_the_path_may_lie_between_them():
@@ -214,7 +261,8 @@ def test_points_and_lines_some_kilometres_away_are_a_warning_that_names_the_dist
     question = one(zone_findings(content), "zone-question")
     assert question.severity is Severity.WARNING
     assert "inf" not in question.message
-    assert not [f for f in zone_findings(content, School="a label") if f.code == "zone-question"]
+    for answered in (zone_findings(content, School="a label"), zone_findings(content, not_here={"School": "a label"})):
+        assert not [f for f in answered if f.code == "zone-question"]
 
 
 def test_files_that_changed_or_are_missing_ground_the_flight(tmp_path):
@@ -238,6 +286,22 @@ def test_a_file_of_another_place_asks_whether_it_is_the_right_one():
     assert one(zone_findings(around(200_000, 0, 200_100, 100)), "zones-far").severity is Severity.WARNING
     swapped = [[lat, lon] for lon, lat in square(0.0, 0.0, 90.0)]
     assert "exchanged" in one(zone_findings(FORMATS["ed269"](swapped)), "zones-far").message
+
+
+def test_one_zone_of_a_file_with_latitude_and_longitude_exchanged_is_an_open_question_and_far_ones_are_not():
+    good, swapped = ed269_volume(polygon(ASIDE)), ed269_volume(polygon([[lat, lon] for lon, lat in square(0, 0, 90)]))
+    elsewhere = ed269_volume(polygon([[lat, lon] for lon, lat in square(9000.0, 0.0, 90.0)]))
+    content = ed269(
+        ed269_feature(good),
+        ed269_feature(swapped, identifier="Z2"),
+        ed269_feature(elsewhere, identifier="Z3"),
+        ed269_feature({**swapped, "horizontalProjection": {"type": "Circle", "center": [47.0, 8.0], "radius": 90}},
+                      identifier="Z4"),
+    )  # fmt: skip
+    asked = [f for f in zone_findings(content) if f.code == "zone-question"]
+    assert [(f.place, f.severity) for f in asked] == [("Z2", Severity.ERROR), ("Z4", Severity.ERROR)]
+    assert "here if its latitude and longitude are exchanged" in asked[0].message
+    assert not [f for f in zone_findings(content, not_here={"Z2": "Town", "Z4": "Town"}) if f.code == "zone-question"]
 
 
 def test_old_sources_and_those_that_ended_are_warnings():

@@ -26,7 +26,7 @@ from groundstation.cli.options import (
     point,
 )
 from planning.base.errors import InputError
-from planning.base.messages import say
+from planning.base.messages import glue, say
 
 if TYPE_CHECKING:
     from planning.site.importing.options import PanelGrid
@@ -148,7 +148,14 @@ def _add_zones(actions: Any) -> None:
         action="append",
         default=[],
         metavar="ZONE=REFERENCE",
-        help="your authorisation for a zone, or the answer to its question; empty takes it back",
+        help="your authorisation for a zone: plans may enter all of it; empty takes it back",
+    )
+    add(
+        "--not-here",
+        action="append",
+        default=[],
+        metavar="ZONE=REFERENCE",
+        help="who says that what cannot be read of a zone is not here; plans keep out of the rest; empty takes it back",
     )
     add("--remove", action="append", default=[], metavar="FILE", help="take a file of zones from the site")
     add_time(command)
@@ -197,12 +204,13 @@ def run_zones(options: argparse.Namespace) -> int:
 
     from groundstation.services.site.zones import OPEN_ZONE, file_lines, zone_rows, zones_of_site, zones_summary
 
-    permissions: dict[str, str] = {}
-    for text in options.permit:
-        zone_id, equals, reference = text.partition("=")
-        if not equals or not zone_id:
-            raise InputError(say("expected ZONE=REFERENCE, got '{}'", text, place="--permit"))
-        permissions[zone_id] = reference
+    stated: dict[str, dict[str, str]] = {"--permit": {}, "--not-here": {}}
+    for option, texts in (("--permit", options.permit), ("--not-here", options.not_here)):
+        for text in texts:
+            zone_id, equals, reference = text.partition("=")
+            if not equals or not zone_id:
+                raise InputError(say("expected ZONE=REFERENCE, got '{}'", text, place=option))
+            stated[option][zone_id] = reference
     at = planned_time(options)
     done = run_job(
         "site zones",
@@ -210,7 +218,8 @@ def run_zones(options: argparse.Namespace) -> int:
             options.site,
             options.files,
             out=options.out,
-            permissions=permissions,
+            permissions=stated["--permit"],
+            answers=stated["--not-here"],
             removed=options.remove,
             today=date.today(),
             monitor=context,
@@ -226,8 +235,11 @@ def run_zones(options: argparse.Namespace) -> int:
         kept = say("kept out of") if row.is_kept else say("not kept out of")
         if row.is_open:
             kept = OPEN_ZONE
-        if row.permitted:
+        elif row.permitted:
             kept = say("permitted by '{}'", row.permitted)
+        elif row.not_here:
+            answer = say("what cannot be read of it is not here according to '{}'", row.not_here)
+            kept = glue(kept, "; ", answer)
         away = say("{:.0f} m from the airspace", row.distance_m)
         if not math.isfinite(row.distance_m):
             away = say("its place is not known")

@@ -257,6 +257,7 @@ OPTION_FIELDS = {
     "--at": ("DayBox", QT_TRANSLATE_NOOP("DayBox", "Planned for")),
     "--temperature": ("DayBox", QT_TRANSLATE_NOOP("DayBox", "Temperature")),
     "--permit": ("ZonesForm", QT_TRANSLATE_NOOP("ZonesForm", "Authorisation")),
+    "--not-here": ("ZonesForm", QT_TRANSLATE_NOOP("ZonesForm", "Not here, according to")),
 }
 """Fields by the option that says the same, but for declared parameters: context and text of their label."""
 

@@ -36,10 +36,10 @@ from groundstation.gui.site.site_tree import SiteTree
 from groundstation.gui.site.terrain_dialog import TerrainDialog
 from groundstation.gui.widgets.scrolling import ButtonGrid, CurrentStack, scrolled
 from groundstation.gui.widgets.theme import colours
-from groundstation.gui.widgets.value_boxes import NameBox, muted
+from groundstation.gui.widgets.value_boxes import FormColumn, NameBox, muted
 from groundstation.services.project.document import Document, Item, ItemKind
 from groundstation.services.project.steps import Act
-from groundstation.services.site.zones import permit, remove_zones, zone_facts
+from groundstation.services.site.zones import not_here, permit, remove_zones, zone_facts
 from groundstation.services.units import UnitSystem, length_unit
 from planning.base.findings import Finding, Severity
 from planning.checks.zones import source_text
@@ -48,7 +48,7 @@ from planning.site.zones.keep_out import known_files, near_zones
 
 
 class ZonePage(Page):
-    """A geo-zone: what it asks for, from which source, and the pilot's authorisation."""
+    """A geo-zone: what it asks for, from which source, the pilot's authorisation, and who says that it is not here."""
 
     def __init__(self, units: UnitSystem, parent: QWidget | None = None) -> None:
         super().__init__(units, parent)
@@ -57,15 +57,27 @@ class ZonePage(Page):
         self._facts, self._source = QLabel(), muted("")
         self._facts.setWordWrap(True)
         self._reference = NameBox()
-        self._reference.setPlaceholderText(self.tr("number and date, or who answered when"))
+        self._reference.setPlaceholderText(self.tr("number and date"))
+        self._answer = NameBox()
+        self._answer.setPlaceholderText(self.tr("who said so, and when"))
+        about = self.tr(
+            "Where the file leaves open where this zone lies: plans keep out of what can be read of it, and the rest "
+            "of it no longer holds up flights."
+        )
+        self._unsure = FormColumn()
+        self._unsure.add(self._answer, muted(about), title=self.tr("Not here, according to"))
         self.add(self._facts, title=self.tr("Geo-zone"))
         self.add(self._reference, title=self.tr("Authorisation"))
         self.add(
-            muted(self.tr("With an authorisation plans may enter this zone. It holds for this state of the file.")),
+            muted(
+                self.tr("With an authorisation plans may enter all of this zone. It holds for this state of the file.")
+            ),
+            self._unsure,
             self._error,
         )
         self.add(self._source, title=self.tr("Source"))
         self._reference.valueChanged.connect(self._permit)
+        self._answer.valueChanged.connect(self._say_not_here)
 
     def show_item(self, model: SiteModel, item: Item) -> None:
         """Show a zone."""
@@ -82,6 +94,8 @@ class ZonePage(Page):
         known = next(found for found in known_files(model) if found.source is near.source)
         self._source.setText(translated(source_text(known), self._units))
         self._reference.setValue(near.permitted)
+        self._answer.setValue(near.not_here)
+        self._unsure.setVisible(near.local.is_unsure or bool(near.not_here))
 
     def text(self) -> str:
         """What is said of the zone."""
@@ -90,6 +104,15 @@ class ZonePage(Page):
     def reference_box(self) -> NameBox:
         """Editor of the authorisation."""
         return self._reference
+
+    def answer_box(self) -> NameBox:
+        """Editor of who says that what cannot be read of the zone is not here."""
+        return self._answer
+
+    def _say_not_here(self, reference: str) -> None:
+        if self._item is not None:
+            edit = partial(not_here, zone_id=self._zone_id, reference=reference, file=self._file)
+            self.edited.emit(self.tr("Answer for {0}").format(self._zone_id), edit, self._item)
 
     def _permit(self, reference: str) -> None:
         if self._item is not None:

@@ -151,8 +151,13 @@ class FlightBrief:
         def worded(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
             return tuple(replace(each, message=localize(each.message), place=localize(each.place)) for each in findings)
 
+        risk = self.ground_risk
+        if risk is not None:
+            how_intrinsic, how_final = localize(risk.how_intrinsic), localize(risk.how_final)
+            risk = replace(risk, how_intrinsic=how_intrinsic, how_final=how_final)
         return replace(
             self,
+            ground_risk=risk,
             findings=worded(self.findings),
             zones=worded(self.zones),
             proof=localize(self.proof),

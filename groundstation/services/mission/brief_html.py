@@ -35,6 +35,7 @@ from missions.mission.export_choices import LinkLoss
 from planning.base.findings import Severity
 from planning.insight.flight_profile import LOW_M
 from planning.insight.ground_risk import GroundRisk
+from planning.insight.ground_risk_class import ground_risk_tables
 from planning.plan import Plan
 from planning.site.ground import ground_of
 from planning.site.records import SiteModel
@@ -403,18 +404,26 @@ def _overview(brief: FlightBrief, units: UnitSystem, tr: Translate) -> Iterable[
     wind = tr("planned for {0}, the aircraft may fly below {1}")
     if brief.ground_risk is not None:
         yield tr("Ground risk (SORA 2.5, a draft)"), _ground_risk(brief.ground_risk, units, tr)
+        yield from _classes(brief.ground_risk, tr)
         yield tr("Uninvolved people inside the buffer"), _people(brief.ground_risk, tr)
     yield tr("Wind"), wind.format(speed.text(brief.wind_m_s), speed.text(brief.max_wind_m_s))
 
 
 def _ground_risk(risk: GroundRisk, units: UnitSystem, tr: Translate) -> str:
     length = length_unit(units)
-    sizes = tr("contingency volume {0} to each side, up to {1} above ground; ground-risk buffer {2} beyond").format(
+    return tr("contingency volume {0} to each side, up to {1} above ground; ground-risk buffer {2} beyond").format(
         length.text(risk.value_of("S_CV")), length.text(risk.contingency_top_m), length.text(risk.value_of("S_GRB"))
     )
-    if risk.final_class is None:
-        return sizes
-    return tr("{0}; class {1}").format(sizes, risk.final_class)
+
+
+def _classes(risk: GroundRisk, tr: Translate) -> Iterable[tuple[str, str]]:
+    """Ground risk classes, what went into each, and which table it is from."""
+    tables, of = ground_risk_tables(), tr("{0}: {1} [{2}]")
+    if risk.intrinsic_class is not None:
+        said = of.format(risk.intrinsic_class, risk.how_intrinsic, tables.source)
+        yield tr("Intrinsic ground risk class"), said
+    if risk.final_class is not None:
+        yield tr("Final ground risk class"), of.format(risk.final_class, risk.how_final, tables.mitigation_source)
 
 
 def _people(risk: GroundRisk, tr: Translate) -> str:

@@ -295,6 +295,13 @@ def bare_site(missions: Sequence[ReadMission]) -> tuple[SiteModel, tuple[Finding
             "its file does not say where it takes off, so home is below its first waypoint, at an assumed "
             "height; what depends on that height is only to look at"
         )
+        if takeoff is not None:
+            away_km = distance_m(takeoff.lat_deg, takeoff.lon_deg, start.lat_deg, start.lon_deg) / 1000.0
+            text = say(
+                "its file says that it takes off {:.0f} km from its first waypoint, which cannot be; home is below "
+                "that waypoint, at an assumed height: correct home in the file, or only look at what depends on it",
+                away_km,
+            )
         findings.append(Finding(Severity.WARNING, "bare-site", text, first.name))
     origin = Origin(round(home.lat_deg, 9), round(home.lon_deg, 9), round(home.height_ellipsoid_m, 3))
     here = (0.0, 0.0, 0.0)

@@ -34,11 +34,11 @@ from planning.insight.ground_risk import (
     GroundRisk,
     Quantity,
     assess_ground_risk,
-    ground_risk_tables,
     raster_text,
     scope_text,
     source_texts,
 )
+from planning.insight.ground_risk_class import ground_risk_tables
 from planning.insight.ground_risk_request import GroundRiskRequest
 from planning.plan import Plan
 from planning.site.file import is_planned_on
@@ -248,10 +248,10 @@ def table_rows(risk: GroundRisk, words: Words = str) -> Iterator[tuple[str, ...]
         source = raster_text(risk.people) if is_counted and risk.people is not None else say("stated by the pilot")
         yield "D_pop", people, f"< {below} /km²", "", words(source)
     if risk.intrinsic_class is not None and risk.final_class is not None:
-        yield "iGRC", words(say("intrinsic ground risk class")), str(risk.intrinsic_class), "", tables.source
-        taken = [f"{name} {level}" for name, level in request.mitigations if level != "none"]
-        name = words(say("final ground risk class"))
-        yield "GRC", name, str(risk.final_class), " - ".join(["iGRC", *taken]), tables.mitigation_source
+        name, how = words(say("intrinsic ground risk class")), words(risk.how_intrinsic)
+        yield "iGRC", name, str(risk.intrinsic_class), how, tables.source
+        name, how = words(say("final ground risk class")), words(risk.how_final)
+        yield "GRC", name, str(risk.final_class), how, tables.mitigation_source
 
 
 def value_text(quantity: Quantity) -> str:
@@ -340,8 +340,12 @@ def sora_csv(draft: SoraDraft, words: Words = str) -> str:
     for each in draft.risk.quantities:
         row = each.symbol, words(each.name), f"{each.value:.6g}", each.unit, each.formula, words(each.source)
         table.writerow([*row, int(each.is_assumed)])
-    for symbol, number in (("iGRC", draft.risk.intrinsic_class), ("GRC", draft.risk.final_class)):
-        table.writerow([symbol, "", "" if number is None else number, "", "", ground_risk_tables().source, 0])
+    risk, tables = draft.risk, ground_risk_tables()
+    for symbol, number, how, source in (
+        ("iGRC", risk.intrinsic_class, risk.how_intrinsic, tables.source),
+        ("GRC", risk.final_class, risk.how_final, tables.mitigation_source),
+    ):
+        table.writerow([symbol, "", "" if number is None else number, "", words(how), source, 0])
     return out.getvalue()
 
 

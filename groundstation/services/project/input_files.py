@@ -30,6 +30,10 @@ PHOTO_STARTS = (b"\xff\xd8\xff", b"\x89PNG\r\n\x1a\n", b"II*\x00", b"MM\x00*", b
 """First bytes of JPEG, PNG, TIFF (two kinds) and BMP files."""
 
 
+KML_OF_MISSIONS = (b"/wpmz/", b'"sortie"')
+"""What stands in a mission's KML: the name space of DJI's WPML, or data that Reflight writes."""
+
+
 class FileKind(Enum):
     """What can be found under a name; the value is what a message calls it."""
 
@@ -38,6 +42,7 @@ class FileKind(Enum):
     PROJECT = "a project"
     MISSION = "a mission file"
     BUILDING = "a building model"
+    PLACES = "a KML of places and outlines"
     TSPLIB = "a TSPLIB instance"
     PHOTO = "a photo"
     FOLDER = "a folder"
@@ -72,6 +77,10 @@ ADVICE = {
     (FileKind.MISSION, FileKind.PLAN): say("it needs no import; 'export' makes a mission of it"),
     (FileKind.MISSION, FileKind.SITE): say("it goes behind --site; name the mission file as well"),
     (FileKind.BUILDING, FileKind.SITE): say("it needs no import; 'plan' takes it as it is"),
+    (FileKind.BUILDING, FileKind.PLACES): say(
+        "it has no walls that could be measured: save the model itself as .ifc, .glb or .obj in the program that made "
+        "it; areas to keep out of are geo-zones ('site zones', or Add zones... in the Site tab)"
+    ),
     (FileKind.TSPLIB, FileKind.PLAN): say("'tradeoff route' takes plans"),
 }
 """What to do, by what was expected and what was found."""
@@ -79,6 +88,7 @@ ADVICE = {
 READERS_KNOW_BETTER = (
     (FileKind.MISSION, FileKind.OTHER),
     (FileKind.MISSION, FileKind.FOLDER),
+    (FileKind.MISSION, FileKind.PLACES),
     (FileKind.PROJECT, FileKind.FOLDER),
     (FileKind.BUILDING, FileKind.OTHER),
     (FileKind.PHOTO, FileKind.OTHER),
@@ -158,6 +168,8 @@ def kind_of(path: Path) -> FileKind | None:
         return _kind_of_json(path)
     if head.startswith(PHOTO_STARTS):
         return FileKind.PHOTO
+    if b"<kml" in head and not any(mark in head for mark in KML_OF_MISSIONS):
+        return FileKind.PLACES
     if is_mission(head):
         return FileKind.MISSION
     if _is_building(path):

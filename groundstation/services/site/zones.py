@@ -1,7 +1,8 @@
-"""Use cases around the geo-zones of a site: add files, take them away, state permissions, list what applies.
+"""Use cases around the geo-zones of a site: add files, take them away, permit and answer, list what applies.
 
-A file is taken over as it is, beside the site file, under its SHA-256. Permissions belong to one state of a file: a new
-state of it begins without any.
+A file is taken over as it is, beside the site file, under its SHA-256. Permissions and answers belong to one state of a
+file: a new state of it begins without any. A permission opens a zone to flights. The answer that what cannot be read of
+a zone is not here leaves closed what can be read of it.
 """
 
 from __future__ import annotations
@@ -20,20 +21,23 @@ from groundstation.services.site.edits import input_checked, with_site
 from planning.base.errors import InputError
 from planning.base.files import read_input_file, real_path
 from planning.base.json_file import check_output, write_together
-from planning.base.messages import say
+from planning.base.messages import glue, say
 from planning.base.progress import QUIET, Monitor
-from planning.checks.zones import source_text, zone_text
+from planning.checks.zones import answer_text, source_text, zone_text
 from planning.site.file import site_bytes
 from planning.site.records import SiteModel
 from planning.site.zones.keep_out import NearZone, at_time, known_files, near_zones, site_zones
 from planning.site.zones.reading import ZONES_FILE, known_zones
-from planning.site.zones.records import SiteZones, ZoneFile, ZoneSet
+from planning.site.zones.records import SiteZones, Zone, ZoneFile, ZoneSet
 from planning.site.zones.times import State
 
 LISTED_WINDOW_S = 3600.0
 """Time after take-off in which listed zones are looked at: nothing is known of the flight yet."""
 
-OPEN_ZONE = say("where it lies is an open question: no flight is ready until it is answered (--permit)")
+OPEN_ZONE = say(
+    "where it lies is an open question: no flight is ready until somebody says that it is not here (--not-here), or "
+    "permits it (--permit)"
+)
 """What becomes of a zone whose place the file does not say for sure."""
 
 
@@ -44,7 +48,7 @@ class AddedZones:
     Parameters
     ----------
     notes
-        What is worth knowing: permissions that ended with the state of a file that they belonged to.
+        What is worth knowing: permissions and answers that ended with the state of a file that they belonged to.
     """
 
     model: SiteModel
@@ -74,14 +78,13 @@ def add_zones(model: SiteModel, paths: Sequence[Path], today: date, monitor: Mon
 def _with_file(model: SiteModel, name: str, content: bytes, today: date, notes: list[str]) -> SiteModel:
     sha256 = hashlib.sha256(content).hexdigest()
     before = next((source for source in model.site.zones if PurePath(source.file).name == name), None)
-    permitted: Mapping[str, str] = {}
-    if before is not None and before.permitted:
-        if before.sha256 == sha256:
-            permitted = before.permitted
-        else:
-            stated = ", ".join(f"'{zone_id}'" for zone_id in before.permitted)
-            notes.append(say("permissions of the old state of '{}' have ended, state them again: {}", name, stated))
-    source = ZoneFile(name if before is None else before.file, sha256, today.isoformat(), permitted)
+    source = ZoneFile(name if before is None else before.file, sha256, today.isoformat())
+    if before is not None and before.sha256 == sha256:
+        source = replace(source, permitted=before.permitted, not_here=before.not_here)
+    elif before is not None and (ended := dict.fromkeys((*before.permitted, *before.not_here))):
+        stated = ", ".join(f"'{zone_id}'" for zone_id in ended)
+        text = say("permissions and answers of the old state of '{}' have ended, state them again: {}", name, stated)
+        notes.append(text)
     return _with_sources(model, source, before, site_zones(source, content))
 
 
@@ -129,6 +132,39 @@ def permit(model: SiteModel, zone_id: str, reference: str, file: str = "") -> Si
     InputError
         No file of the site has such a zone, or several have.
     """
+    for before, zone in _of_zone(model, zone_id, file):
+        source = replace(before, permitted=_with_reference(before.permitted, zone.id, reference))
+        model = _with_source(model, before, source)
+    return model
+
+
+def not_here(model: SiteModel, zone_id: str, reference: str, file: str = "") -> SiteModel:
+    """The site with who says that what cannot be read of a zone's place is not here; empty takes it back.
+
+    Parameters and further errors as `permit`.
+
+    Raises
+    ------
+    InputError
+        The file leaves nothing open of where the zone lies.
+    """
+    of_zone = _of_zone(model, zone_id, file)
+    sources = [source for source, _ in of_zone]
+    unsure = {each.local.zone for each in near_zones(model) if each.source in sources and each.local.is_unsure}
+    if reference.strip() and not any(zone in unsure or zone.place_questions for _, zone in of_zone):
+        raise InputError.say(
+            "zone '{}' leaves nothing open about where it lies, so there is nothing to answer; if flights may enter "
+            "it, state the authorisation (--permit)",
+            of_zone[0][1].id,
+        )
+    for before, zone in of_zone:
+        source = replace(before, not_here=_with_reference(before.not_here, zone.id, reference))
+        model = _with_source(model, before, source)
+    return model
+
+
+def _of_zone(model: SiteModel, zone_id: str, file: str) -> list[tuple[ZoneFile, Zone]]:
+    """Files that hold a zone, and the zone as each has it: the same; parameters and errors as `permit`."""
     named = next((source.file for source in model.site.zones if zone_id.startswith(f"{source.file}/")), "")
     if named and not file:
         file, zone_id = named, zone_id.removeprefix(f"{named}/")
@@ -145,14 +181,17 @@ def permit(model: SiteModel, zone_id: str, reference: str, file: str = "") -> Si
     if any(zone != of_zone[0][1] for _, zone in of_zone):
         files = ", ".join(source.file for source, _ in of_zone)
         raise InputError.say("zone '{}' differs between files ({}); name one as FILE/ZONE", zone_id, files)
-    for before, _ in of_zone:
-        permitted = {key: value for key, value in before.permitted.items() if key != zone_id}
-        if reference.strip():
-            permitted[zone_id] = reference.strip()
-        source = replace(before, permitted=permitted)
-        found = next(each for each in model.zones if each.source == before)
-        model = _with_sources(model, source, before, replace(found, source=source))
-    return model
+    return of_zone
+
+
+def _with_reference(stated: Mapping[str, str], zone_id: str, reference: str) -> dict[str, str]:
+    others = {key: value for key, value in stated.items() if key != zone_id}
+    return {**others, zone_id: reference.strip()} if reference.strip() else others
+
+
+def _with_source(model: SiteModel, before: ZoneFile, source: ZoneFile) -> SiteModel:
+    found = next(each for each in model.zones if each.source == before)
+    return _with_sources(model, source, before, replace(found, source=source))
 
 
 def write_zones(path: Path, model: SiteModel) -> SiteModel:
@@ -186,11 +225,17 @@ def zones_of_site(
     *,
     out: Path | None = None,
     permissions: Mapping[str, str] | None = None,
+    answers: Mapping[str, str] | None = None,
     removed: Iterable[str] = (),
     today: date,
     monitor: Monitor = QUIET,
 ) -> AddedZones:
     """A site file with its zones, changed and written where anything of it changes.
+
+    Parameters
+    ----------
+    permissions, answers
+        References by zone: see `permit`, `not_here`.
 
     Raises
     ------
@@ -207,6 +252,8 @@ def zones_of_site(
         model = remove_zones(model, name)
     for zone_id, reference in (permissions or {}).items():
         model = permit(model, zone_id, reference)
+    for zone_id, reference in (answers or {}).items():
+        model = not_here(model, zone_id, reference)
     if model is not before or out is not None:
         check_output(target)
         model = write_zones(target, model)
@@ -225,6 +272,8 @@ class ZoneRow:
         Horizontally from the airspace box; infinite where nobody knows.
     is_open
         Whether it is not known for sure where it lies, and nobody has answered: no flight is ready until then.
+    permitted, not_here
+        References of the authorisation, and of who says that what cannot be read of it is not here; empty for none.
     """
 
     id: str
@@ -235,6 +284,7 @@ class ZoneRow:
     is_open: bool
     state: str
     permitted: str
+    not_here: str
     questions: tuple[str, ...]
 
 
@@ -255,6 +305,7 @@ def _row(near: NearZone) -> ZoneRow:
         bool(near.open_places),
         near.state.value,
         near.permitted,
+        near.not_here,
         local.all_questions,
     )
 
@@ -293,10 +344,7 @@ def zone_facts(near: NearZone) -> tuple[str, ...]:
     """What the window says of a zone, line by line."""
     zone = near.local.zone
     lines = [zone_text(near), *(text for text in (zone.conditions, zone.message) if text)]
-    if near.permitted:
-        lines.append(say("permitted by '{}'", near.permitted))
-    else:
-        lines.append(_kept_text(near))
+    lines.append(_kept_text(near))
     if near.state is not State.APPLIES:
         lines.append(say("it applies at some times only"))
     for authority in zone.authorities:
@@ -308,10 +356,15 @@ def zone_facts(near: NearZone) -> tuple[str, ...]:
 
 
 def _kept_text(near: NearZone) -> str:
-    """Whether plans keep out of a zone without a permission."""
+    """Whether plans keep out of a zone, and who says what of it."""
+    if near.permitted:
+        return say("permitted by '{}': plans may enter all of it", near.permitted)
     if near.open_places:
         return OPEN_ZONE
-    return say("plans keep out of it") if near.is_kept else say("plans need not keep out of it")
+    kept = say("plans keep out of it") if near.is_kept else say("plans need not keep out of it")
+    if not near.not_here:
+        return kept
+    return glue(kept if near.local.volumes else say("its place is not known"), "; ", answer_text(near))
 
 
 def zone_lines(near: NearZone, model: SiteModel) -> tuple[str, ...]:
@@ -329,12 +382,8 @@ def zone_lines(near: NearZone, model: SiteModel) -> tuple[str, ...]:
     else:
         lines.append(say("from the ground upwards"))
     lines += [zone.message] if zone.message else []
-    if near.permitted:
-        lines.append(say("permitted by '{}'", near.permitted))
-    elif near.state is State.NOT_THEN:
-        lines.append(say("it does not apply at the planned time"))
-    else:
-        lines.append(_kept_text(near))
+    is_quiet = near.state is State.NOT_THEN and not near.permitted
+    lines.append(say("it does not apply at the planned time") if is_quiet else _kept_text(near))
     return tuple(lines)
 
 

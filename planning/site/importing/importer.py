@@ -318,7 +318,12 @@ def read_source(path: Path, options: ImportOptions, monitor: Monitor = QUIET) ->
     """
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
-        raise InputError.say("expected a file ending in {}, got '{}'", ", ".join(SUFFIXES), suffix, place=path)
+        raise InputError.say(
+            "expected a file ending in {}, got '{}'; open it in the program that made it, and save it as one of these",
+            ", ".join(SUFFIXES),
+            suffix,
+            place=path,
+        )
     if not path.exists():
         raise InputError.say("there is no such file", place=path)
     if options.building is not None and suffix not in (*CITYGML_SUFFIXES, *CITYJSON_SUFFIXES):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
 from functools import lru_cache
@@ -85,6 +85,8 @@ class NearZone:
     ----------
     permitted
         Reference of the pilot's authorisation; empty for none.
+    not_here
+        Who says that what cannot be read of its place is not here; empty for nobody.
     state
         Whether it applies in the time of the flight.
     """
@@ -92,6 +94,7 @@ class NearZone:
     source: ZoneFile
     local: LocalZone
     permitted: str
+    not_here: str
     state: State
 
     @property
@@ -106,8 +109,8 @@ class NearZone:
 
     @property
     def open_places(self) -> tuple[str, ...]:
-        """What keeps anybody from saying that flights stay out of it, until the pilot answers (a permission)."""
-        return self.local.open_places if self.is_kept else ()
+        """What keeps anybody from saying that flights stay out of it, until the pilot answers or has a permission."""
+        return self.local.open_places if self.is_kept and not self.not_here else ()
 
     @property
     def is_restricting(self) -> bool:
@@ -119,10 +122,11 @@ def near_zones(model: SiteModel) -> Iterator[NearZone]:
     """Zones near a site, of all files that can be used, in the time that `model.zones_at` says."""
     origin = model.site.origin
     for known in known_files(model):
-        permitted: Mapping[str, str] = known.source.permitted
+        permitted, not_here = known.source.permitted, known.source.not_here
         for local in known.local.near if known.local is not None else ():
             state = state_of(local.zone, model.zones_at, origin.lat_deg, origin.lon_deg)
-            yield NearZone(known.source, local, permitted.get(local.zone.id, ""), state)
+            zone_id = local.zone.id
+            yield NearZone(known.source, local, permitted.get(zone_id, ""), not_here.get(zone_id, ""), state)
 
 
 AROUND = timedelta(minutes=15)

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -38,6 +38,10 @@ REACH_M = 1000.0
 
 COUNTRY_M = 50_000.0
 """What is not known of zones up to here is asked; files without any zone so near are of another place."""
+
+EXCHANGED_M = 1_000_000.0
+"""Zones further away that would lie at the site with latitude and longitude exchanged are asked about. Nearer ones may
+well lie there: about Cairo, where both are near 30 degrees, others lie so to each other."""
 
 EDGE_STEP_M = 1000.0
 MAX_STEPS = 2000
@@ -121,6 +125,11 @@ class LocalZone:
         return (*self.zone.place_questions, *widths, *self.place_questions)
 
     @property
+    def is_unsure(self) -> bool:
+        """Whether anything is open about where it lies."""
+        return bool(self.open_places) or not self.volumes or self.doubtful is not None
+
+    @property
     def all_questions(self) -> tuple[str, ...]:
         """Whatever is open about it."""
         zone = self.zone
@@ -135,7 +144,8 @@ class LocalZones:
     Parameters
     ----------
     near
-        Those within `REACH_M`, and those up to `COUNTRY_M` of which it is open where they lie.
+        Those within `REACH_M`, those up to `COUNTRY_M` of which it is open where they lie, and those that would lie
+        within `REACH_M` with latitude and longitude exchanged.
     nearest_m
         Lower bound of the distance of the nearest; infinite where none says where it lies.
     is_swapped
@@ -170,16 +180,35 @@ def local_zones(found: ZoneSet, origin: Origin, airspace: Airspace, ground: Grou
             near.append(LocalZone(zone, bound_m, place_questions=lost))
         elif (zone.place_questions or zone.width_questions) and bound_m <= COUNTRY_M:
             near.append(LocalZone(zone, bound_m))
+        elif bound_m > EXCHANGED_M and _is_here_exchanged(zone, frame):
+            text = say("it lies {:.0f} km away, but here if its latitude and longitude are exchanged", bound_m / 1000.0)
+            near.append(LocalZone(zone, bound_m, place_questions=(text,)))
     return LocalZones(tuple(near), nearest_m, nearest_m > COUNTRY_M and _is_swapped(found, frame))
 
 
 def _is_swapped(found: ZoneSet, frame: _Frame) -> bool:
-    for zone in found.zones:
-        for volume in zone.volumes:
-            first = volume.area.centre if isinstance(volume.area, Circle) else volume.area.ring[0]
-            lat_deg, lon_deg = first
-            if abs(lat_deg) <= 90.0 and frame.distance_of_m(lon_deg, lat_deg) <= COUNTRY_M:
-                return True
+    return any(_begins_here_exchanged(volume, frame) for zone in found.zones for volume in zone.volumes)
+
+
+def _begins_here_exchanged(volume: Volume, frame: _Frame) -> bool:
+    lat_deg, lon_deg = volume.area.centre if isinstance(volume.area, Circle) else volume.area.ring[0]
+    return abs(lat_deg) <= 90.0 and frame.distance_of_m(lon_deg, lat_deg) <= COUNTRY_M
+
+
+def _is_here_exchanged(zone: Zone, frame: _Frame) -> bool:
+    """Whether a zone would lie within `REACH_M` if latitude and longitude were changed for each other."""
+    for volume in zone.volumes:
+        area = volume.area
+        if not _begins_here_exchanged(volume, frame):
+            continue
+        if isinstance(area, Circle):
+            other: Outline | Circle = replace(area, centre=area.centre[::-1])
+        elif all(abs(first) <= 90.0 for first, _ in area.ring):
+            other = replace(area, ring=tuple(corner[::-1] for corner in area.ring))
+        else:
+            continue
+        if frame.least_distance_m(replace(volume, area=other)) <= REACH_M:
+            return True
     return False
 
 

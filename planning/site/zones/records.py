@@ -248,13 +248,17 @@ class ZoneFile:
     imported
         The day on which it was added.
     permitted
-        Reference of the pilot's authorisation by identifier of the zone.
+        Reference of the pilot's authorisation by identifier of the zone: flights may enter all of it.
+    not_here
+        Who says that what the file leaves open of a zone's place is not here, by its identifier. What can be read of
+        the zone stays closed.
     """
 
     file: str
     sha256: str
     imported: str
     permitted: Mapping[str, str] = field(default_factory=dict, hash=False)
+    not_here: Mapping[str, str] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
         if not self.file:
@@ -272,6 +276,13 @@ class ZoneFile:
                         "zone '{}': expected the reference of the authorisation, got an empty text",
                         zone_id,
                         place="permitted",
+                    )
+                )
+        for zone_id, reference in self.not_here.items():
+            if not reference.strip():
+                raise ValueError(
+                    say(
+                        "zone '{}': expected who says that it is not here, got an empty text", zone_id, place="not_here"
                     )
                 )
 

@@ -96,6 +96,34 @@ def test_zones_are_added_seen_authorised_and_taken_away(hands, zones):
     assert hands.context.selection == Item(ItemKind.BUILDING)
 
 
+@pytest.mark.slow
+def test_who_says_that_an_unsure_zone_is_not_here_opens_nothing_that_can_be_read_of_it(hands, tmp_path):
+    ring = square(150.0, -40.0, 15.0, ORIGIN)
+    lost = ed269_feature(ed269_volume(polygon([*ring[:4], [None, 47.0], ring[4]])), identifier="SCHOOL")
+    sure = ed269_feature(ed269_volume(polygon(square(-60.0, 0.0, 5.0, ORIGIN))), identifier="HELI")
+    path = tmp_path / "zones.json"
+    path.write_bytes(ed269(lost, sure))
+    add(hands, path)
+    shown = hands.tab.detail.findings._list.item(0).text()
+    assert "“Not here, according to”" in shown
+    assert "--" not in shown
+    hands.context.select(HELIPORT)
+    hands.idle()
+    assert not hands.tab.detail.properties.page().answer_box().isVisible()
+    hands.context.select(SCHOOL)
+    hands.idle()
+    page = hands.tab.detail.properties.page()
+    type_into(page.answer_box(), "Town, by phone")
+    QTest.keyClick(page.answer_box(), Qt.Key.Key_Return)
+    hands.idle()
+    assert hands.site.zones[0].not_here == {"SCHOOL": "Town, by phone"}
+    assert len(no_fly_volumes(hands.context.document.site)) == 2
+    assert "plans keep out of it; what cannot be read of it is not here according to 'Town, by phone'" in page.text()
+    assert not any(finding.code == "zone-question" for finding in hands.tab.detail.findings.findings())
+    hands.undo()
+    assert not hands.site.zones[0].not_here
+
+
 def test_a_file_that_cannot_be_read_is_refused_in_words_and_changes_nothing(hands, zones):
     zones.write_bytes(zones.read_bytes()[:-30])
     add(hands, zones)

@@ -240,3 +240,10 @@ def test_findings_carry_the_measured_value_and_its_limit(texts: dict[str, str]) 
     (finding,) = [f for f in check_dji(DjiParts(waylines, None)) if f.code == "gimbal-pitch"]
     assert (finding.value, finding.limit, finding.unit) == (36.0, 35.0, "deg")
     assert "waypoint 1" in finding.place
+
+
+def test_an_action_that_dji_does_not_document_says_what_becomes_of_it(texts: dict[str, str]) -> None:
+    strange = {name: text.replace(">takePhoto<", ">sweepLaser<", 1) for name, text in texts.items()}
+    parts = DjiParts(parse_wpml(strange["waylines.wpml"].encode(), "waylines.wpml"), None)
+    found = next(each for each in check_dji(parts) if each.code == "action-function")
+    assert "'sweepLaser' is no action that DJI documents: plans made of this mission go without it" in found.message

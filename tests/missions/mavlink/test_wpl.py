@@ -134,3 +134,15 @@ def test_items_out_of_order_are_taken_by_their_numbers(tmp_path: Path) -> None:
     file = read_wpl(path)
     assert [item.params[4] for item in file.items] == [52.1, 52.2]
     assert "taken in the order of their numbers" in file.findings[0].message
+
+
+def test_a_home_that_stands_elsewhere_than_in_line_0_is_told_since_vehicles_fly_to_it(tmp_path: Path) -> None:
+    places = ["22\t0\t0\t0\t0\t47.0\t8.0\t30", "16\t0\t0\t0\t0\t47.001\t8.0\t30"]
+    lines = [f"{number}\t0\t3\t{place}\t1" for number, place in enumerate(places)]
+    home = "2\t1\t0\t16\t0\t0\t0\t0\t47.0\t8.0\t408\t1"
+    path = tmp_path / "a.waypoints"
+    for last, n_told in ((home, 1), (home.replace("\t1\t0\t16", "\t1\t3\t16"), 0)):
+        path.write_text("\n".join(["QGC WPL 110", *lines, last]))
+        told = [finding.message for finding in read_wpl(path).findings if finding.code == "home"]
+        assert len(told) == n_told
+        assert all("item 2 looks like home" in text and "408 m above sea level" in text for text in told)

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
+from planning.aircraft.catalogue import profiles
 from planning.base.errors import InfeasibleError, InputError
 from planning.base.findings import Severity
 from planning.geo.height_field import HeightField
@@ -20,9 +21,9 @@ from planning.insight.ground_risk import (
     BARO_ERROR_M,
     GNSS_HEIGHT_ERROR_M,
     assess_ground_risk,
-    ground_risk_tables,
     grown,
 )
+from planning.insight.ground_risk_class import ground_risk_tables
 from planning.insight.ground_risk_request import BANDS, GroundRiskRequest
 from planning.site.records import NoFlyZone
 from planning.site.terrain import surfaces, terrain_of
@@ -233,6 +234,86 @@ def test_classes_follow_the_table_and_ten_times_the_people_are_one_class_more():
         assert more.below_per_km2 == 10.0 * fewer.below_per_km2
         assert more.classes == tuple(each + 1 for each in fewer.classes)
     assert [tables.column_of(d, v) for d, v in ((1.0, 25.0), (1.01, 1.0), (0.5, 26.0), (41.0, 1.0))] == [0, 1, 1, None]
+
+
+TABLE_1 = {
+    # AMC1 Article 11 of (EU) 2019/947 (ED Decision 2025/018/R), Table 1 = SORA 2.5, Table 2, cell by cell.
+    "controlled": (0.0, (1, 1, 2, 3, 3)),
+    "remote": (5.0, (2, 3, 4, 5, 6)),
+    "lightly": (50.0, (3, 4, 5, 6, 7)),
+    "sparsely": (500.0, (4, 5, 6, 7, 8)),
+    "suburban": (5_000.0, (5, 6, 7, 8, 9)),
+    "city": (50_000.0, (6, 7, 8, 9, 10)),
+    "assembly": (math.inf, (7, 8, None, None, None)),
+}
+COLUMNS_1 = ((1.0, 25.0), (3.0, 35.0), (8.0, 75.0), (20.0, 120.0), (40.0, 200.0))
+TABLE_5 = {
+    # The same, Table 5: low, medium, high; None for n/a.
+    "sheltering": (1, 2, None),
+    "restrictions": (None, 1, 2),
+    "observers": (1, None, None),
+    "impact": (None, 1, 2),
+}
+
+
+def classed(**stated):
+    return assess_ground_risk(flown(ROUND), place(), replace(CALM, wind_m_s=0.0, **stated))
+
+
+@pytest.mark.parametrize("word", TABLE_1)
+def test_each_cell_of_the_published_table_comes_out_and_says_its_row_and_column(word):
+    below, classes = TABLE_1[word]
+    assert next(band.below_per_km2 for band in ground_risk_tables().bands if band.word == word) == below
+    for (dimension_m, speed_m_s), wanted in zip(COLUMNS_1, classes, strict=True):
+        for size, speed in ((dimension_m, 25.0), (0.5, speed_m_s)):
+            risk = classed(population=word, dimension_m=size, speed_m_s=speed)
+            assert risk.intrinsic_class == risk.final_class == wanted
+            if wanted is not None:
+                assert f"column up to {dimension_m:g} m and {speed_m_s:g} m/s; row " in risk.how_intrinsic
+                assert (f"less than {below:g} people" in risk.how_intrinsic) == (0.0 < below < math.inf)
+
+
+@pytest.mark.parametrize("name", TABLE_5)
+def test_each_cell_of_the_published_mitigations_takes_off_what_it_says(name):
+    for level, points in zip(("low", "medium", "high"), TABLE_5[name], strict=True):
+        try:
+            risk = classed(population="city", **{name: level})
+        except ValueError:
+            assert points is None
+            continue
+        assert (points or 0) == 6 - risk.final_class
+        assert f"6 - {points or 0} (" in risk.how_final
+
+
+def test_what_is_raised_to_controlled_ground_says_so():
+    risk = classed(population="remote", restrictions="high", impact="high")
+    assert risk.how_final == (
+        "2 - 2 (M1(B) high) - 2 (M2 high) = -2, raised to 1, the class of controlled ground in this column"
+    )
+
+
+def test_a_small_aircraft_is_of_class_1_but_over_assemblies():
+    # The same, note of Table 1: at most 250 g and 25 m/s.
+    for population in ("controlled", "city"):
+        risk = classed(population=population, mass_kg=0.25, speed_m_s=25.0)
+        assert (risk.intrinsic_class, risk.final_class) == (1, 1)
+        assert "at most 250 g" in risk.how_intrinsic
+    assert classed(population="assembly", mass_kg=0.25).intrinsic_class == 7
+    assert classed(population="city", mass_kg=0.251).intrinsic_class == 6
+    assert classed(population="city", mass_kg=0.25, speed_m_s=25.1).intrinsic_class == 7
+
+
+def test_a_speed_that_a_mode_limits_moves_no_column():
+    # S.4.2.4 (b): the maximum speed is the fastest that can be commanded, not that of the flight.
+    fast = replace(profiles()["m3e"].body, full_speed_m_s=30.0)
+    plan = replace(flown(ROUND), profile="fast")
+    own = replace(profiles()["m3e"], id="fast", body=fast)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("planning.insight.ground_risk.profiles", lambda: {"fast": own})
+        limited = assess_ground_risk(plan, place(), replace(CALM, population="suburban", speed_m_s=10.0))
+    assert limited.intrinsic_class == 6
+    assert "30 m/s: column up to 3 m and 35 m/s" in limited.how_intrinsic
+    assert limited.value_of("v") == 10.0
 
 
 @pytest.mark.parametrize(

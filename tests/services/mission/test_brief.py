@@ -172,7 +172,11 @@ def test_the_buffer_and_who_may_be_inside_stand_on_the_page_where_the_pilot_stat
     controlled = text(population="controlled")
     assert "contingency volume 23.2 m to each side" in controlled
     assert "ground-risk buffer" in controlled
-    assert "; class 1" in controlled
+    assert "Intrinsic ground risk class 1: 0.62 m and 21 m/s: column up to 1 m and 25 m/s; row controlled" in controlled
+    assert "[SORA 2.5, step 2, Table 2 (AMC1 Article 11, Table 1)]" in controlled
+    lessened = text(population="suburban", restrictions="medium", impact="medium")
+    assert "Final ground risk class 3: 5 - 1 (M1(B) medium) - 1 (M2 medium) = 3 [SORA 2.5, step 3" in lessened
+    assert "ground risk class" not in text()
     assert "Uninvolved people inside the buffer none: controlled ground area" in controlled
     assert "fewer than 500 per square kilometre" in text(population="sparsely")
     assert "not stated how many: keep everybody out" in text()

@@ -87,7 +87,9 @@ def test_tables_have_each_number_with_formula_and_source(draft):
         assert f"<td>{each.symbol}</td><td>{each.name}</td>" in page
     assert "a &amp; b | c" in page
     assert "It is no permission" in text
-    assert "iGRC - M2 medium" in text
+    assert "5 - 1 (M2 medium) = 4" in text
+    assert [row["formula"] for row in rows[-2:]] == [draft.risk.how_intrinsic, draft.risk.how_final]
+    assert "Table 5" in rows[-1]["source"]
 
 
 def test_the_summary_says_what_is_not_assessed(draft):

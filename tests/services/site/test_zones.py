@@ -8,7 +8,7 @@ import pytest
 from groundstation.services.project.document import Document
 from groundstation.services.project.folder import open_project, save_project
 from groundstation.services.site.edits import HeightReference, move_home, set_origin
-from groundstation.services.site.zones import add_zones, permit, remove_zones, zone_rows, zones_of_site
+from groundstation.services.site.zones import add_zones, not_here, permit, remove_zones, zone_rows, zones_of_site
 from planning.base.errors import InputError
 from planning.site.file import read_site, write_site
 from planning.site.zones.keep_out import no_fly_volumes
@@ -96,6 +96,35 @@ def test_a_permission_is_taken_back_and_a_file_taken_away(place):
     assert not gone.site.zones
     assert not gone.zones
     assert no_fly_volumes(gone) == ()
+
+
+LOST = ed269(
+    ed269_feature(ed269_volume(polygon([*square(0.0, 0.0, 20.0)[:4], [None, 47.0], square(0.0, 0.0, 20.0)[4]]))),
+    ed269_feature(ed269_volume(polygon(square(300.0, 0.0, 20.0))), identifier="Z2"),
+)
+
+
+def test_an_answer_opens_nothing_that_can_be_read_and_is_kept_with_the_content_that_it_was_given_for(place):
+    (place / "from" / "zones.json").write_bytes(LOST)
+    model = added(place, answers={"Z1": " Town "}).model
+    assert [(row.is_open, row.is_kept, row.not_here, row.permitted) for row in zone_rows(model)] == [
+        (False, True, "Town", ""),
+        (False, True, "", ""),
+    ]
+    assert len(no_fly_volumes(read_site(place / "site" / "a.site.json"))) == 2
+    assert read_site(place / "site" / "a.site.json").site == model.site
+    assert not not_here(model, "Z1", "").site.zones[0].not_here
+    both = permit(model, "Z1", "4711").site.zones[0]
+    assert (both.permitted, both.not_here) == ({"Z1": "4711"}, {"Z1": "Town"})
+    (place / "from" / "zones.json").write_bytes(OTHER)
+    again = added(place)
+    assert "permissions and answers of the old state of 'zones.json' have ended, state them again: 'Z1'" in again.notes
+    assert [row.not_here for row in zone_rows(again.model)] == [""]
+
+
+def test_a_zone_that_leaves_nothing_open_of_its_place_takes_no_answer(place):
+    with pytest.raises(InputError, match=r"zone 'Z2' leaves nothing open about where it lies.*--permit"):
+        not_here(added(place).model, "Z2", "Town")
 
 
 def test_a_zone_on_both_sides_of_a_sheet_s_edge_is_permitted_once_and_different_ones_by_their_file(place):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -159,10 +160,16 @@ def aixm_ring(ring: list[list[float]]) -> str:
 AIRSPACE = Airspace((-100.0, -100.0, 3.0), (100.0, 100.0, 80.0), ground_z_m=0.0)
 
 
-def with_zones(content: bytes, model: SiteModel | None = None, file: str = "zones.json", **permitted: str) -> SiteModel:
+def with_zones(
+    content: bytes,
+    model: SiteModel | None = None,
+    file: str = "zones.json",
+    not_here: Mapping[str, str] | None = None,
+    **permitted: str,
+) -> SiteModel:
     """A site with one file of zones."""
     base = site() if model is None else model
-    source = ZoneFile(file, hashlib.sha256(content).hexdigest(), "2026-11-28", permitted)
+    source = ZoneFile(file, hashlib.sha256(content).hexdigest(), "2026-11-28", permitted, not_here or {})
     return replace(base, site=replace(base.site, zones=(source,)), zones=(site_zones(source, content),))
 
 
