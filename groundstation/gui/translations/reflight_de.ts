@@ -7874,6 +7874,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>&apos;{0}&apos; ({1}{2}, {3})</translation>
     </message>
     <message>
+        <source>&apos;{0}&apos; is no action that DJI documents: plans made of this mission go without it, and an aircraft may refuse it</source>
+        <translation>&apos;{0}&apos; ist keine von DJI dokumentierte Aktion: Pläne aus dieser Mission kommen ohne sie aus, und ein Fluggerät weist sie vielleicht ab</translation>
+    </message>
+    <message>
         <source>&apos;{0}&apos; is nothing that heights are above; expected ellipsoid, egm96, egm2008 or the code of a height system such as EPSG:7837</source>
         <translation>&apos;{0}&apos; ist nichts, worüber Höhen gezählt werden; erwartet: ellipsoid, egm96, egm2008 oder der Code eines Höhensystems wie EPSG:7837</translation>
     </message>
@@ -8172,6 +8176,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>Resume sortie</source>
         <translation>Einsatz fortsetzen</translation>
+    </message>
+    <message>
+        <source>SORA: 1 to 10, by Table 1 of AMC1 Article 11: its row says who is below, its column holds the dimension and the full speed of the aircraft. M1 and M2 (Table 5) lower it to the final class.</source>
+        <translation>SORA: 1 bis 10 nach Tabelle 1 von AMC1 Artikel 11: Die Zeile sagt, wer darunter ist, die Spalte fasst Abmessung und Höchstgeschwindigkeit des Fluggeräts. M1 und M2 (Tabelle 5) senken sie zur endgültigen Klasse.</translation>
     </message>
     <message>
         <source>Show the first</source>
@@ -8542,6 +8550,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>wie angegeben</translation>
     </message>
     <message>
+        <source>at most 250 g and {0} m/s: class 1 but over assemblies of people</source>
+        <translation>höchstens 250 g und {0} m/s: Klasse 1, außer über Menschenansammlungen</translation>
+    </message>
+    <message>
         <source>at most {0} longer than the shortest</source>
         <translation>höchstens {0} länger als die kürzeste</translation>
     </message>
@@ -8786,6 +8798,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Passpunkte liegen im Mittel um {0} m daneben, höchstens um {1} m</translation>
     </message>
     <message>
+        <source>controlled ground area</source>
+        <translation>kontrollierter Bodenbereich</translation>
+    </message>
+    <message>
         <source>corrections: expected USER@HOST:PORT/MOUNTPOINT, such as me@rtk.example.org:2101/VRS, over TLS with ntrips:// before it, got &apos;{0}&apos;</source>
         <translation>Korrekturen: erwartet USER@HOST:PORT/MOUNTPOINT, etwa me@rtk.example.org:2101/VRS, über TLS mit ntrips:// davor, gefunden &apos;{0}&apos;</translation>
     </message>
@@ -9026,6 +9042,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected a deepest level from 0 to {0}, found {1}</source>
         <translation>erwartet wird eine tiefste Stufe von 0 bis {0}, gefunden wurde {1}</translation>
+    </message>
+    <message>
+        <source>expected a file ending in {0}, got &apos;{1}&apos;; open it in the program that made it, and save it as one of these</source>
+        <translation>erwartet wurde eine Datei mit der Endung {0}, gefunden &apos;{1}&apos;; öffnen Sie sie in dem Programm, aus dem sie kommt, und sichern Sie sie in einem dieser Formate</translation>
     </message>
     <message>
         <source>expected a file in the folder of the site, since it names meshes there</source>
@@ -9756,10 +9776,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Formel</translation>
     </message>
     <message>
-        <source>formulas and tables of both were taken from public implementations that agree, and give the distances that German authorities publish (STS-BOS 1.0, tables 1 and 2); compare them with the documents</source>
-        <translation>Formeln und Tabellen beider stammen aus öffentlichen Programmen, die übereinstimmen, und ergeben die Abstände, die deutsche Behörden veröffentlichen (STS-BOS 1.0, Tabellen 1 und 2); vergleichen Sie sie mit den Dokumenten</translation>
-    </message>
-    <message>
         <source>from step {0} on splats were drawn by the processor: {1}</source>
         <translation>ab Schritt {0} zeichnete der Prozessor die Splats: {1}</translation>
     </message>
@@ -10048,6 +10064,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>wie weit {0} Fotos bei ihren Linien auseinanderliegen{1}</translation>
     </message>
     <message>
+        <source>if it only says that the zone is not here, state it so instead (--not-here)</source>
+        <translation>sagt sie nur, dass die Zone nicht hier liegt, geben Sie das stattdessen so an (--not-here)</translation>
+    </message>
+    <message>
         <source>ignored explicit argument %r</source>
         <translation>übergangener Wert %r</translation>
     </message>
@@ -10316,6 +10336,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>es hat noch keine Position des Luftfahrzeugs</translation>
     </message>
     <message>
+        <source>it has no walls that could be measured: save the model itself as .ifc, .glb or .obj in the program that made it; areas to keep out of are geo-zones (&apos;site zones&apos;, or Add zones... in the Site tab)</source>
+        <translation>sie hat keine Wände, die sich messen ließen: Sichern Sie das Modell selbst als .ifc, .glb oder .obj in dem Programm, aus dem es kommt; Gebiete, die zu meiden sind, sind Geozonen (&apos;site zones&apos; oder Zonen hinzufügen... im Tab Standort)</translation>
+    </message>
+    <message>
         <source>it has not heard for seconds where the operator stands: the link to it is bad</source>
         <translation>es hat seit Sekunden nicht gehört, wo der Betreiber steht: die Verbindung zu ihm ist schlecht</translation>
     </message>
@@ -10346,6 +10370,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>it knows no mountpoint of this name</source>
         <translation>er kennt keinen Mountpoint dieses Namens</translation>
+    </message>
+    <message>
+        <source>it lies {0} km away, but here if its latitude and longitude are exchanged</source>
+        <translation>sie liegt {0} km entfernt, aber hier, wenn Breite und Länge vertauscht sind</translation>
     </message>
     <message>
         <source>it packs its data in a way that was not asked for</source>
@@ -10398,6 +10426,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>item {0} is none of a fence</source>
         <translation>Element {0} gehört zu keinem Geofence</translation>
+    </message>
+    <message>
+        <source>item {0} looks like home, which belongs into line 0: where it stands, vehicles fly to it, {1} m above sea level; if it is home, make it line 0 and number the others anew</source>
+        <translation>Element {0} sieht wie der Startplatz aus, der in Zeile 0 gehört: Wo es steht, fliegen Fahrzeuge dorthin, {1} m über dem Meer; ist es der Startplatz, machen Sie es zu Zeile 0 und nummerieren die anderen neu</translation>
     </message>
     <message>
         <source>its authority</source>
@@ -10454,6 +10486,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>its description is not as it was written ({0})</source>
         <translation>seine Beschreibung ist nicht, wie sie geschrieben wurde ({0})</translation>
+    </message>
+    <message>
+        <source>its file says that it takes off {0} km from its first waypoint, which cannot be; home is below that waypoint, at an assumed height: correct home in the file, or only look at what depends on it</source>
+        <translation>laut Datei startet sie {0} km von ihrem ersten Wegpunkt, was nicht sein kann; der Startplatz liegt unter diesem Wegpunkt, in angenommener Höhe: Berichtigen Sie den Startplatz in der Datei, oder sehen Sie sich nur an, was davon abhängt</translation>
     </message>
     <message>
         <source>its file system cannot</source>
@@ -10578,6 +10614,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>lens found from the photos</source>
         <translation>Objektiv aus den Fotos bestimmt</translation>
+    </message>
+    <message>
+        <source>less than {0} people per km² ({1})</source>
+        <translation>weniger als {0} Personen je km² ({1})</translation>
     </message>
     <message>
         <source>level ground</source>
@@ -10792,6 +10832,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>min</translation>
     </message>
     <message>
+        <source>mirrored light is in the colours, as harmonics of degree {0}: blurred, and it stays on the panes</source>
+        <translation>gespiegeltes Licht ist in den Farben, als Kugelfunktionen vom Grad {0}: verwischt, und es bleibt auf den Scheiben</translation>
+    </message>
+    <message>
         <source>missed</source>
         <translation>übersehen</translation>
     </message>
@@ -10814,6 +10858,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>more than {0} and at most {1}</source>
         <translation>mehr als {0} und höchstens {1}</translation>
+    </message>
+    <message>
+        <source>more than {0} people per km² (assemblies)</source>
+        <translation>mehr als {0} Personen je km² (Ansammlungen)</translation>
     </message>
     <message>
         <source>more views would show nothing new or could not be flown</source>
@@ -11476,12 +11524,12 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Menschen je Quadratkilometer</translation>
     </message>
     <message>
-        <source>permissions of the old state of &apos;{0}&apos; have ended, state them again: {1}</source>
-        <translation>Genehmigungen für den alten Stand von &apos;{0}&apos; sind beendet, erneut angeben: {1}</translation>
-    </message>
-    <message>
         <source>permitted by &apos;{0}&apos;</source>
         <translation>genehmigt durch &apos;{0}&apos;</translation>
+    </message>
+    <message>
+        <source>permitted by &apos;{0}&apos;: plans may enter all of it</source>
+        <translation>genehmigt durch &apos;{0}&apos;: Pläne dürfen in die ganze Zone</translation>
     </message>
     <message>
         <source>photo &apos;{0}&apos; is in {1} already; keep one of them</source>
@@ -12310,6 +12358,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the cluster does not answer any more ({0}); complete photos stay in {1}: run it again to go on</source>
         <translation>der Cluster antwortet nicht mehr ({0}); fertige Fotos bleiben in {1}: noch einmal starten, um weiterzumachen</translation>
+    </message>
+    <message>
+        <source>the complex item &apos;{0}&apos; does not hold the items it generates, which only QGroundControl can make; load it there, send it to a vehicle or a simulator, receive it again as simple items, and save those</source>
+        <translation>das komplexe Element &apos;{0}&apos; enthält die Elemente nicht, die es erzeugt, und nur QGroundControl kann sie machen; laden Sie es dort, senden Sie es an ein Fahrzeug oder einen Simulator, holen Sie es als einfache Elemente zurück, und sichern Sie diese</translation>
     </message>
     <message>
         <source>the connection broke while TLS began ({0})</source>
@@ -13240,6 +13292,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>was dort antwortet, ist kein NTRIP-Caster</translation>
     </message>
     <message>
+        <source>what cannot be read of it is not here according to &apos;{0}&apos;</source>
+        <translation>was von ihr nicht zu lesen ist, liegt nicht hier laut &apos;{0}&apos;</translation>
+    </message>
+    <message>
         <source>what changes it for a time ({0} entries) is not read</source>
         <translation>was sie zeitweise ändert ({0} Einträge), wird nicht gelesen</translation>
     </message>
@@ -13270,6 +13326,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>when it is active is not read: it counts all the time</source>
         <translation>wann sie aktiv ist, wird nicht gelesen: sie zählt immer</translation>
+    </message>
+    <message>
+        <source>where it lies is an open question: no flight is ready until somebody says that it is not here (--not-here), or permits it (--permit)</source>
+        <translation>wo sie liegt, ist eine offene Frage: Kein Flug ist bereit, bis jemand sagt, dass sie nicht hier liegt (--not-here), oder ihn genehmigt (--permit)</translation>
     </message>
     <message>
         <source>wind, from any side</source>
@@ -13306,6 +13366,14 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>zone &apos;{0}&apos; differs between files ({1}); name one as FILE/ZONE</source>
         <translation>Zone &apos;{0}&apos; ist in den Dateien verschieden ({1}); eine als DATEI/ZONE nennen</translation>
+    </message>
+    <message>
+        <source>zone &apos;{0}&apos; leaves nothing open about where it lies, so there is nothing to answer; if flights may enter it, state the authorisation (--permit)</source>
+        <translation>Zone &apos;{0}&apos; lässt nicht offen, wo sie liegt, also gibt es nichts zu beantworten; dürfen Flüge hinein, geben Sie die Genehmigung an (--permit)</translation>
+    </message>
+    <message>
+        <source>zone &apos;{0}&apos;: expected who says that it is not here, got an empty text</source>
+        <translation>Zone &apos;{0}&apos;: erwartet wurde, wer sagt, dass sie nicht hier liegt; gefunden wurde ein leerer Text</translation>
     </message>
     <message>
         <source>zones</source>
@@ -13382,6 +13450,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0} lines of the log make no sense and were skipped</source>
         <translation>{0} Zeilen des Logs ergeben keinen Sinn und wurden übersprungen</translation>
+    </message>
+    <message>
+        <source>{0} m and {1} m/s: column up to {2} m and {3} m/s; row {4}</source>
+        <translation>{0} m und {1} m/s: Spalte bis {2} m und {3} m/s; Zeile {4}</translation>
     </message>
     <message>
         <source>{0} m from the airspace</source>
@@ -13500,6 +13572,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>{0}, Kamera {1}</translation>
     </message>
     <message>
+        <source>{0}, raised to {1}, the class of controlled ground in this column</source>
+        <translation>{0}, angehoben auf {1}, die Klasse kontrollierten Bodens in dieser Spalte</translation>
+    </message>
+    <message>
         <source>{0}, telemetry log</source>
         <translation>{0}, Telemetrie-Log</translation>
     </message>
@@ -13522,14 +13598,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0}: unseen views</source>
         <translation>{0}: neue Ansichten</translation>
-    </message>
-    <message>
-        <source>{0}: where it lies cannot be read for sure in &apos;{1}&apos;: {2}. So nobody can say that flights stay out of it. Look it up, or ask {3}; then add the corrected file, or state who answered what (--permit)</source>
-        <translation>{0}: wo sie liegt, ist in &apos;{1}&apos; nicht sicher zu lesen: {2}. Deshalb kann niemand sagen, dass Flüge draußen bleiben. Sehen Sie nach, oder fragen Sie {3}; fügen Sie dann die berichtigte Datei hinzu, oder geben Sie an, wer was geantwortet hat (--permit)</translation>
-    </message>
-    <message>
-        <source>{0}: where it lies is not sure; answered by &apos;{1}&apos;</source>
-        <translation>{0}: wo sie liegt, ist nicht sicher; beantwortet durch &apos;{1}&apos;</translation>
     </message>
     <message>
         <source>{0}: zones {1}, within {2} m of the airspace {3}; SHA-256 {4}</source>
@@ -13662,10 +13730,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the actionId occurs twice in its group; number from 0</source>
         <translation>die actionId kommt in ihrer Gruppe zweimal vor; von 0 an zählen</translation>
-    </message>
-    <message>
-        <source>&apos;{0}&apos; is not a documented action</source>
-        <translation>&apos;{0}&apos; ist keine dokumentierte Aktion</translation>
     </message>
     <message>
         <source>the action is for the camera at position {0}, where payloadInfo names none</source>
@@ -14386,10 +14450,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>expected an object, got {0}</source>
         <translation>erwartet wurde ein Objekt, gefunden: {0}</translation>
-    </message>
-    <message>
-        <source>the complex item &apos;{0}&apos; does not hold the items it generates, which only QGroundControl can make; turn it into simple items there</source>
-        <translation>das zusammengesetzte Element &apos;{0}&apos; enthält die Elemente nicht, die es erzeugt, und nur QGroundControl kann sie bilden; es dort in einfache Elemente umwandeln</translation>
     </message>
     <message>
         <source>type is &apos;{0}&apos;; expected SimpleItem or ComplexItem</source>
@@ -15596,10 +15656,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Route</translation>
     </message>
     <message>
-        <source>SORA: 1 to 10 by who is below, and by size and speed of the aircraft, before anything lessens the risk; M1 and M2 lower it to the final class.</source>
-        <translation>SORA: 1 bis 10 danach, wer darunter ist, und nach Größe und Geschwindigkeit des Fluggeräts, bevor etwas das Risiko mindert; M1 und M2 senken sie zur endgültigen Klasse.</translation>
-    </message>
-    <message>
         <source>SORA: the ground beyond the contingency volume that the aircraft may hit when it falls out of that.</source>
         <translation>SORA: der Boden jenseits des Contingency-Volumens, auf den das Fluggerät fallen kann, wenn es daraus abstürzt.</translation>
     </message>
@@ -16008,6 +16064,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Scheiben darin finden, oder den Datensatz eines Gebäudes ohne Scheiben machen</translation>
     </message>
     <message>
+        <source>formulas were taken from public implementations that agree, and give the distances that German authorities publish (STS-BOS 1.0, tables 1 and 2); classes, mitigations and cells of people are those of AMC1 Article 11, tables 1, 4 and 5; compare them with the documents</source>
+        <translation>die Formeln stammen aus öffentlichen Programmen, die übereinstimmen, und ergeben die Abstände, die deutsche Behörden veröffentlichen (STS-BOS 1.0, Tabellen 1 und 2); Klassen, Minderungen und Zellen der Bevölkerung sind die von AMC1 Artikel 11, Tabellen 1, 4 und 5; vergleichen Sie sie mit den Dokumenten</translation>
+    </message>
+    <message>
         <source>has no dataset.json, but a COLMAP model in {0}; &apos;prepare PHOTOS --colmap MODEL&apos; makes one of it, with a site and its panels or without</source>
         <translation>hat keine dataset.json, aber ein COLMAP-Modell in {0}; &apos;prepare PHOTOS --colmap MODEL&apos; macht eine daraus, mit einem Standort und seinen Scheiben oder ohne</translation>
     </message>
@@ -16074,6 +16134,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>one of them is wrong: attach the right terrain, or shift it to home</source>
         <translation>eines von beiden stimmt nicht: fügen Sie das richtige Gelände hinzu, oder verschieben Sie es auf die Höhe des Startplatzes</translation>
+    </message>
+    <message>
+        <source>permissions and answers of the old state of &apos;{0}&apos; have ended, state them again: {1}</source>
+        <translation>Genehmigungen und Antworten zum alten Stand von &apos;{0}&apos; gelten nicht mehr, geben Sie sie neu an: {1}</translation>
     </message>
     <message>
         <source>sections seen only with pixels larger than {0} mm: {1} of {2} covered</source>
@@ -16498,10 +16562,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>where home stands the files have no heights: no flight can be planned until home is moved</source>
         <translation>am Startplatz haben die Dateien keine Höhen: bis er verschoben ist, lässt sich kein Flug planen</translation>
-    </message>
-    <message>
-        <source>where it lies is an open question: no flight is ready until it is answered (--permit)</source>
-        <translation>wo sie liegt, ist eine offene Frage: kein Flug ist bereit, bis sie beantwortet ist (--permit)</translation>
     </message>
     <message>
         <source>where the ground is not known, the surface counts as ground</source>
@@ -17088,6 +17148,18 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0}: the path stays out of it, {1} m away</source>
         <translation>{0}: der Weg bleibt draußen, {1} m entfernt</translation>
+    </message>
+    <message>
+        <source>{0}: where it lies cannot be read for sure in &apos;{1}&apos;: {2}. So nobody can say that flights stay out of it. Look it up, or ask {3}; then add the corrected file, or state who says that it is not here (--not-here): flights keep out of what can be read of it all the same. A permission (--permit) opens all of it</source>
+        <translation>{0}: Wo sie liegt, ist in &apos;{1}&apos; nicht sicher zu lesen: {2}. Deshalb kann niemand sagen, dass Flüge draußen bleiben. Schlagen Sie nach, oder fragen Sie {3}; fügen Sie dann die berichtigte Datei hinzu, oder geben Sie an, wer sagt, dass sie nicht hier liegt (--not-here): Von dem, was von ihr lesbar ist, halten Flüge trotzdem Abstand. Eine Genehmigung (--permit) öffnet sie ganz</translation>
+    </message>
+    <message>
+        <source>{0}: where it lies is not sure; it is not here according to &apos;{1}&apos;</source>
+        <translation>{0}: Wo sie liegt, ist nicht sicher; nicht hier laut &apos;{1}&apos;</translation>
+    </message>
+    <message>
+        <source>{0}: where it lies is not sure; the authorisation &apos;{1}&apos; opens all of it</source>
+        <translation>{0}: Wo sie liegt, ist nicht sicher; die Genehmigung &apos;{1}&apos; öffnet sie ganz</translation>
     </message>
     <message>
         <source>{0}: {1}</source>
@@ -18660,10 +18732,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>{0}, so the site has no panels yet: find them in photos (&apos;panels&apos; or the Photos tab), or draw them on the building (the Site tab, or --panel-grid)</source>
         <translation>{0}, daher hat der Standort noch keine Scheiben: in Fotos suchen (&apos;panels&apos; oder Reiter Fotos) oder auf das Gebäude zeichnen (Reiter Standort oder --panel-grid)</translation>
-    </message>
-    <message>
-        <source>expected a file ending in {0}, got &apos;{1}&apos;</source>
-        <translation>erwartet wurde eine Datei mit der Endung {0}, gefunden: &apos;{1}&apos;</translation>
     </message>
     <message>
         <source>there is no such file</source>
@@ -21914,10 +21982,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>was die Schattierung dieses Verfahrens beiträgt, ist nicht in der Datei: ihre Gaußschen haben nur ihre eigenen Farben</translation>
     </message>
     <message>
-        <source>mirrored light is in the colours, as harmonics of degree 3: blurred, and it stays on the panes</source>
-        <translation>gespiegeltes Licht ist in den Farben, als Kugelfunktionen vom Grad 3: verwischt, und es bleibt auf den Scheiben</translation>
-    </message>
-    <message>
         <source>panels show their own colour only, and mirror nothing</source>
         <translation>Scheiben zeigen nur ihre eigene Farbe und spiegeln nichts</translation>
     </message>
@@ -24514,10 +24578,6 @@ Größe: {3}; Dreiecke: {4}</translation>
 <context>
     <name>ZonePage</name>
     <message>
-        <source>number and date, or who answered when</source>
-        <translation>Aktenzeichen und Datum, oder wer wann geantwortet hat</translation>
-    </message>
-    <message>
         <source>Geo-zone</source>
         <translation>Geozone</translation>
     </message>
@@ -24526,8 +24586,24 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Genehmigung</translation>
     </message>
     <message>
-        <source>With an authorisation plans may enter this zone. It holds for this state of the file.</source>
-        <translation>Mit einer Genehmigung dürfen Pläne in diese Zone führen. Sie gilt für diesen Stand der Datei.</translation>
+        <source>number and date</source>
+        <translation>Nummer und Datum</translation>
+    </message>
+    <message>
+        <source>who said so, and when</source>
+        <translation>wer das wann gesagt hat</translation>
+    </message>
+    <message>
+        <source>Where the file leaves open where this zone lies: plans keep out of what can be read of it, and the rest of it no longer holds up flights.</source>
+        <translation>Wo die Datei offen lässt, wo diese Zone liegt: Pläne bleiben aus dem heraus, was von ihr lesbar ist; der Rest hält Flüge nicht mehr auf.</translation>
+    </message>
+    <message>
+        <source>Not here, according to</source>
+        <translation>Nicht hier laut</translation>
+    </message>
+    <message>
+        <source>With an authorisation plans may enter all of this zone. It holds for this state of the file.</source>
+        <translation>Mit einer Genehmigung dürfen Pläne in diese ganze Zone. Sie gilt für diesen Stand der Datei.</translation>
     </message>
     <message>
         <source>Source</source>
@@ -24546,6 +24622,10 @@ Größe: {3}; Dreiecke: {4}</translation>
         <translation>Sie reicht über den Luftraum.</translation>
     </message>
     <message>
+        <source>Answer for {0}</source>
+        <translation>Antwort für {0}</translation>
+    </message>
+    <message>
         <source>Authorisation for {0}</source>
         <translation>Genehmigung für {0}</translation>
     </message>
@@ -24555,6 +24635,10 @@ Größe: {3}; Dreiecke: {4}</translation>
     <message>
         <source>Authorisation</source>
         <translation>Genehmigung</translation>
+    </message>
+    <message>
+        <source>Not here, according to</source>
+        <translation>Nicht hier laut</translation>
     </message>
 </context>
 <context>
