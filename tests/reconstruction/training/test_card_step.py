@@ -379,17 +379,21 @@ def test_a_hundred_steps_of_adam_are_those_of_torch_but_for_rounding() -> None:
     limits = Limits(smallest_m=0.01, largest_m=1.0)
     device, n = card.device, len(model.splats)
     g, before = seeded(6), copy.deepcopy(theirs.splats.state_dict())
-    drawing, _ = card.drawing(view, ANTIALIASED, 3)
-    weights = device.buffer(4 * n)
+    drawn = card.drawing(view, ANTIALIASED, 3)
+    places = torch.from_numpy(device.read((drawn.places, 4 * (n + 1)))[0].view(np.int32))
+    is_seen = places.diff() > 0
+    assert 50 < drawn.drawing.n == int(is_seen.sum()) < n - 10
+    weights = device.buffer(4 * drawn.drawing.n)
     for step in range(100):
         set_rates(reference, rates, step, step / 100.0, 0.5)
         # Of splats that no pixel shows, half of all in each step, gradients are 0, and moments go on.
-        factor = (torch.rand(n, 1, generator=g) < 0.5) * 10.0 ** torch.randint(-8, 1, (n, 1), generator=g)
+        factor = (is_seen[:, None] & (torch.rand(n, 1, generator=g) < 0.5)) * 10.0 ** torch.randint(
+            -8, 1, (n, 1), generator=g
+        )
         given_features, given_parameters = (factor * torch.randn(n, k, generator=g) for k in (10, 16))
-        totals = torch.cat([given_features, torch.zeros(n, 22)], dim=1)
-        pieces = [device.buffer(4 * values.numel()) for values in (totals, given_parameters)]
-        for piece, values in zip(pieces, (totals, given_parameters), strict=True):
-            device.write(piece, values.numpy())
+        totals = torch.cat([given_features, torch.zeros(n, 6), given_parameters], dim=1)[is_seen]
+        piece = device.buffer(4 * totals.numel())
+        device.write(piece, totals.numpy())
         reference.zero_grad(set_to_none=True)
         features = theirs._features(view, 3)[:, :10]
         others = (theirs.splats.means, theirs.splats.opacities[:, None], theirs.splats.quats, theirs.splats.scales)
@@ -402,7 +406,7 @@ def test_a_hundred_steps_of_adam_are_those_of_torch_but_for_rounding() -> None:
         by_name = {group["name"]: group["lr"] for group in reference.param_groups}
         by_name["details"] = by_name["colours"] * rates.colour_details
         by = AdamStep(by_name, rates.glass_geometry, 1.0, 0.0, limits, NO_CHANGES, 0)
-        card.learn(drawing, 3, [pieces[0]], [pieces[1]], weights, by)
+        card.learn(drawn, 3, [piece], weights, by)
     card.bring(model.splats, optimiser)
     assert optimiser.state[model.splats.means]["step"] == 100.0
     for name in PLACES:
