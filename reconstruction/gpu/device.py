@@ -56,6 +56,8 @@ MAPPED_STEP = 8
 """Of the bytes that are read of a buffer."""
 IDLE_BYTES = 1 << 30
 """Kept of what was given back, at most."""
+ROOMY_BYTES = 4 << 30
+"""Held of a card's memory, beyond which idle pieces make room for new ones: many cards have no more than 8 GB."""
 
 
 LOST = "device is lost"
@@ -327,6 +329,8 @@ class Device:
         library, is_buffer = _library(), kind.startswith("buffer")
         with self._lock:
             idle = self._idle.get((kind, size))
+            if not idle and self.held_bytes + n_bytes > ROOMY_BYTES:
+                self.forget_idle()
             if idle:
                 raw, view = idle.pop()
                 self._idle_bytes -= n_bytes
@@ -353,6 +357,16 @@ class Device:
                 return
             self._idle.setdefault((kind, size), []).append((raw, view))
             self._idle_bytes += n_bytes
+
+    def forget_idle(self) -> None:
+        """Give idle pieces back to the driver: what comes next is of other sizes."""
+        with self._lock:
+            for (kind, size), idle in self._idle.items():
+                for raw, _ in idle:
+                    raw.destroy()
+                    self._hold(-size if kind == "buffer" else -size * TEXELS_A_ROW * TEXEL_BYTES)
+            self._idle.clear()
+            self._idle_bytes = 0
 
     def write(self, piece: Piece, values: NDArray[Any]) -> None:
         """Fill the beginning of a buffer."""

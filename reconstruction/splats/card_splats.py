@@ -82,7 +82,7 @@ BYTES_FOR_ALL = 192 << 20
 """Kernels, photos, light, and pieces of the pool that nobody takes."""
 
 ROUNDED = 1.25
-NUMBERS_A_SPLAT, NUMBERS_A_PAIR, QUADS_A_PIXEL = 10, 6, 32
+NUMBERS_A_SPLAT, NUMBERS_A_PAIR, QUADS_A_PIXEL = 10, 6, 24
 """Beside tables: radii, weights, keys and places and what they are sorted with; bins and numbers, alike; and states,
 photos, light and gradients."""
 
@@ -203,6 +203,7 @@ class CardSplats:
         glass = (splats.panels >= 0).float().numpy()
         self._parts: list[_Part] = []
         check_number(self.n, device.most_bytes // 4 - 1)
+        device.forget_idle()
         with device.errors_said():
             for start, count in parts_of(self.n, min(device.most_bytes // (16 * LEARNED_QUADS), MOST_OF_PART)):
                 values = _packed(learned, start, count)

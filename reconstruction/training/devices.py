@@ -43,7 +43,7 @@ from reconstruction.splats.densification.strategy import NO_CHANGES, Limits
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.rasteriser import rasterise
 from reconstruction.splats.rasterising.views import View
-from reconstruction.splats.rasterising.wgpu_backend import PATCH_COLUMNS
+from reconstruction.splats.rasterising.wgpu_backend import LANE_ROWS, PATCH_COLUMNS
 from reconstruction.splats.splats import Splats
 from reconstruction.training.config import ANTIALIASED, TrainConfig
 
@@ -203,11 +203,11 @@ def training_bytes(splats: Splats, view: View, settings: RasterSettings, n: int,
     given = splats.means, splats.quats, splats.scales, splats.opacities, splats.means[:, :1]
     radii_px = rasterise(*(values.detach().cpu() for values in given), view, settings=settings).radii_px
     radii_px = radii_px[radii_px > 0].double()
-    # Patches of the boxes around them, which may begin and end between two.
-    across, down = (2.0 * radii_px.clamp(max=side) / PATCH_COLUMNS + 2.0 for side in (view.width_px, view.height_px))
-    most = rounded_up(view.width_px, PATCH_COLUMNS) * rounded_up(view.height_px, PATCH_COLUMNS)
+    # Boxes begin anywhere in a patch, so that on average they reach into one more each way than they are large.
+    sides = (view.width_px, PATCH_COLUMNS), (view.height_px, LANE_ROWS)
+    across, down = ((2.0 * radii_px / of_patch + 1.0).clamp(max=rounded_up(side, of_patch)) for side, of_patch in sides)
     share = n / max(len(splats), 1)
-    n_patches = share * float((across * down).clamp(max=most).sum())
+    n_patches = share * float((across * down).sum())
     size = PictureSize(math.ceil(share * len(radii_px)), math.ceil(n_patches), view.width_px * view.height_px)
     return needed_bytes(n, size, is_software=is_software)
 
