@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import math
 from dataclasses import replace
 
@@ -210,6 +211,8 @@ def test_a_step_with_moments_of_16_bits_is_that_with_32_and_they_are_forgotten_a
 def test_what_a_splat_takes_of_the_memory_is_laid_out_and_counted() -> None:
     device = open_device()
     splats = splats_of(random_splats(20_000, VIEW, 3))
+    gc.collect()
+    device.forget_idle()
     before = device.held_bytes
     card = CardSplats(device, splats, adam_of(splats), with_glass=False)
     assert device.held_bytes - before == len(splats) * (3 * 16 * LEARNED_QUADS + 16)
@@ -220,4 +223,5 @@ def test_what_a_splat_takes_of_the_memory_is_laid_out_and_counted() -> None:
     card.try_step(VIEW, ANTIALIASED, pull, BY)
     assert device.held_bytes == held
     del card
+    gc.collect()
     assert device.held_bytes == held - len(splats) * (3 * 16 * LEARNED_QUADS + 16)
