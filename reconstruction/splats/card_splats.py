@@ -190,8 +190,8 @@ class CardSplats:
         self.device, self.n, self.solid = device, len(splats), not splats.is_flat
         self.n_quads = GLASS_FEATURES if with_glass else OTHER_FEATURES
         self.is_half = self.n > MOST_WHOLE
-        own = {"SOLID": int(self.solid), "GLASS": int(with_glass), "HALF": int(self.is_half)}
-        self.constants: dict[str, Constant] = {**HOUSE, **own}
+        kind = {"SOLID": int(self.solid), "GLASS": int(with_glass), "HALF": int(self.is_half)}
+        self.constants: dict[str, Constant] = {**HOUSE, **kind}
         group = optimiser.param_groups[0]
         self._betas, self._epsilon = group["betas"], group["eps"]
         self.n_steps = int(optimiser.state.get(splats.means, {}).get("step", 0))

@@ -201,7 +201,8 @@ def training_bytes(splats: Splats, view: View, settings: RasterSettings, n: int,
     Pictures are as large as that of the view.
     """
     given = splats.means, splats.quats, splats.scales, splats.opacities, splats.means[:, :1]
-    radii_px = rasterise(*(values.detach().cpu() for values in given), view, settings=settings).radii_px
+    means, quats, scales, opacities, features = (values.detach().cpu() for values in given)
+    radii_px = rasterise(means, quats, scales, opacities, features, view, settings=settings).radii_px
     radii_px = radii_px[radii_px > 0].double()
     # Boxes begin anywhere in a patch, so that on average they reach into one more each way than they are large.
     sides = (view.width_px, PATCH_COLUMNS), (view.height_px, LANE_ROWS)

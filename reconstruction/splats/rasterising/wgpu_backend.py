@@ -347,7 +347,7 @@ class Drawing:
             They take the place of the last quads of the sums, and what comes back is `totals`: for `GRADIENT_QUADS_AT`
             quads of channels at most.
         """
-        own = () if in_place else (self.device.buffer(16 * PARAMETER_QUADS * part[1]),)
+        own = [] if in_place else [self.device.buffer(16 * PARAMETER_QUADS * part[1])]
         commands.run(
             "project_back", self.constants | {"IN_PLACE": int(in_place)}, groups_of(part[1]), self.uniform(part=part),
             self.parameters, self.radii, totals, *own,
