@@ -24,6 +24,7 @@ from reconstruction.light.glass_light import GlassLight
 from reconstruction.light.photo_set import PanelPlanes
 from reconstruction.light.radiance_grid import GridBox, RadianceGrid
 from reconstruction.metrics.image_metrics import WINDOW_PX
+from reconstruction.splats import card_splats
 from reconstruction.splats.card_splats import PLACES, AdamStep, CardSplats
 from reconstruction.splats.densification.mcmc import MarkovChain
 from reconstruction.splats.densification.strategy import (
@@ -486,3 +487,47 @@ def test_densification_is_told_the_same_and_jitters_as_much_as_on_the_processor(
     raster = model(view, degree=3, settings=ANTIALIASED).raster
     assert torch.equal(seen["views"], (raster.radii_px > 0).float())
     assert len(seen["eyes_m"]) == 1
+
+
+@pytest.mark.long
+def test_moments_of_16_bits_learn_as_well_as_those_of_32(monkeypatch: pytest.MonkeyPatch) -> None:
+    view, n_steps = turned_view(60, 40, 50.0), 150
+    rates, most_whole = TrainConfig().rates, card_splats.MOST_WHOLE
+    lost_db, gained_db = [], []
+
+    def psnr_db(model: SceneModel, shown: Tensor) -> float:
+        with torch.no_grad():
+            error = model(view, degree=3, settings=ANTIALIASED).display - shown
+        return -10.0 * float(error.square().mean().log10())
+
+    for seed in range(3):
+        truth = made_model(view, n=400)
+        with torch.no_grad():
+            shown = truth(view, degree=3, settings=ANTIALIASED).display.clamp(0.0, 1.0)
+        sample = made_sample(view)
+        ones = torch.ones(shown.shape[:2], dtype=torch.bool)
+        sample = replace(sample, display=(255.0 * shown).round().to(torch.uint8), facade=ones, shown=ones)
+        found = []
+        for most in (most_whole, 0):
+            monkeypatch.setattr(card_splats, "MOST_WHOLE", most)
+            model, strategy = copy.deepcopy(truth), FixedNumber()
+            g = seeded(seed)
+            with torch.no_grad():
+                for name, spread in (("means", 0.05), ("log_scales", 0.5), ("sh", 0.5), ("opacity_logits", 1.0)):
+                    values = getattr(model.splats, name)
+                    values += spread * torch.randn(values.shape, generator=g)
+            optimiser, before_db = optimiser_of(model), psnr_db(model, shown)
+            card = CardStep(open_device(), model, optimiser)
+            assert card.splats.is_half == (most == 0)
+            for step in range(n_steps):
+                set_rates(optimiser, rates, step, step / n_steps, 1.0)
+                gradients, _ = card.gradients(
+                    sample, torch.ones(()), None, 3, ANTIALIASED, LossWeights(), step / n_steps, None
+                )
+                card.learn(gradients, rates, strategy, Limits(), step, observed=0.0, jitters=False)
+            card.bring(moments=True)
+            found.append(psnr_db(model, shown))
+        gained_db.append(found[0] - before_db)
+        lost_db.append(found[0] - found[1])
+    assert min(gained_db) > 2.0, gained_db
+    assert sum(lost_db) / 3 < 0.05, lost_db
