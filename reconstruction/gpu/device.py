@@ -2,6 +2,7 @@
 
 Kernels are WGSL files of `data`. Each is compiled once for a set of constants. What they read and write are buffers and
 textures from a pool: those that are given back are taken again, so a training step asks the driver for nothing new.
+What is held of a card's memory is counted, idle pieces included; what the driver takes for itself nobody knows.
 A binding of a buffer is limited, to 128 MiB on older cards; callers ask `most_bytes` and work in parts.
 """
 
@@ -55,6 +56,8 @@ MAPPED_STEP = 8
 """Of the bytes that are read of a buffer."""
 IDLE_BYTES = 1 << 30
 """Kept of what was given back, at most."""
+ROOMY_BYTES = 4 << 30
+"""Held of a card's memory, beyond which idle pieces make room for new ones: many cards have no more than 8 GB."""
 
 
 LOST = "device is lost"
@@ -183,6 +186,8 @@ class Device:
         Lanes that work together, 8 or 32.
     has_subgroups
         Whether they can do so without shared memory.
+    held_bytes, peak_bytes
+        Of all buffers and textures that there are, in use, idle or for reading, and the most there were.
     """
 
     adapter: Adapter
@@ -190,6 +195,8 @@ class Device:
     most_bytes: int
     group: int
     has_subgroups: bool
+    held_bytes: int = 0
+    peak_bytes: int = 0
     _kernels: dict[tuple[str, tuple[tuple[str, Constant], ...]], _Kernel] = field(default_factory=dict)
     _idle: dict[tuple[str, int], list[tuple[Any, Any]]] = field(default_factory=dict)
     _idle_bytes: int = 0
@@ -226,8 +233,13 @@ class Device:
         use = _library().BufferUsage
         self.raw.create_buffer(size=LEAST_BYTES, usage=use.COPY_DST).destroy()
 
-    def buffer(self, n_bytes: int) -> Piece:
+    def buffer(self, n_bytes: int, *, stays: bool = False) -> Piece:
         """A buffer of as many bytes or somewhat more, filled with anything.
+
+        Parameters
+        ----------
+        stays
+            It is used for long: it is no larger than it must be, and never of the pool.
 
         Raises
         ------
@@ -236,18 +248,41 @@ class Device:
         """
         if n_bytes > self.most_bytes:
             raise ValueError(f"a buffer of {n_bytes} bytes: the device has {self.most_bytes} at most")
-        size = min(_rounded(max(n_bytes, LEAST_BYTES)), self.most_bytes // 4 * 4)
+        if stays:
+            size = rounded_up(max(n_bytes, LEAST_BYTES), MAPPED_STEP) * MAPPED_STEP
+            return self._taken("buffer that stays", size, size)
+        size = self.buffer_bytes(n_bytes)
         return self._taken("buffer", size, size)
+
+    def buffer_bytes(self, n_bytes: int) -> int:
+        """What a buffer of so many bytes takes."""
+        return min(_rounded(max(n_bytes, LEAST_BYTES)), self.most_bytes // 4 * 4)
+
+    def forget_peak(self) -> None:
+        """Begin to count `peak_bytes` anew."""
+        with self._lock:
+            self.peak_bytes = self.held_bytes
+
+    def _hold(self, n_bytes: int) -> None:
+        """Count bytes that were taken from the driver, or given back to it."""
+        with self._lock:
+            self.held_bytes += n_bytes
+            self.peak_bytes = max(self.peak_bytes, self.held_bytes)
 
     def table(self, texels: int, kind: Literal["rgba32float", "rgba32uint"] = "rgba32float") -> Piece:
         """A texture of as many texels or more, row by row, filled with anything."""
-        rows = -(-max(texels, 1) // TEXELS_A_ROW)
-        # Programs compile a kernel anew for each mix of heights that are powers of 2 and those that are none.
-        rows = 1 << (rows - 1).bit_length() if self.adapter.is_software else _rounded(rows, 1)
-        rows = min(rows, TEXELS_A_ROW)
+        n_bytes = self.table_bytes(texels)
+        rows = n_bytes // (TEXELS_A_ROW * TEXEL_BYTES)
         if texels > rows * TEXELS_A_ROW:
             raise ValueError(f"a table of {texels} texels: the device has {self.most_texels} at most")
-        return self._taken(kind, rows, rows * TEXELS_A_ROW * TEXEL_BYTES)
+        return self._taken(kind, rows, n_bytes)
+
+    def table_bytes(self, texels: int) -> int:
+        """What a table of so many texels takes."""
+        rows = rounded_up(max(texels, 1), TEXELS_A_ROW)
+        # Programs compile a kernel anew for each mix of heights that are powers of 2 and those that are none.
+        rows = 1 << (rows - 1).bit_length() if self.adapter.is_software else _rounded(rows, 1)
+        return min(rows, TEXELS_A_ROW) * TEXELS_A_ROW * TEXEL_BYTES
 
     def picture(self, levels: Sequence[NDArray[Any]]) -> Piece:
         """A texture that is no table, to be read between its texels; of the caller, and never of the pool.
@@ -273,7 +308,10 @@ class Device:
             layout = {"bytes_per_row": level.nbytes // (extent[1] * extent[2]), "rows_per_image": extent[1]}
             place = {"texture": raw, "mip_level": number}
             self.raw.queue.write_texture(place, np.ascontiguousarray(level), layout, extent)
-        return Piece(raw, levels[0].nbytes, raw.create_view())
+        piece, n_bytes = Piece(raw, levels[0].nbytes, raw.create_view()), sum(level.nbytes for level in levels)
+        self._hold(n_bytes)
+        weakref.finalize(piece, self._hold, -n_bytes).atexit = False
+        return piece
 
     def sampler(self, *, is_round: bool) -> Piece:
         """Reads pictures, linear between texels; at their ends it goes on at the other side, or stays."""
@@ -288,32 +326,47 @@ class Device:
         return Piece(raw, 0, raw)
 
     def _taken(self, kind: str, size: int, n_bytes: int) -> Piece:
-        library = _library()
+        library, is_buffer = _library(), kind.startswith("buffer")
         with self._lock:
             idle = self._idle.get((kind, size))
+            if not idle and self.held_bytes + n_bytes > ROOMY_BYTES:
+                self.forget_idle()
             if idle:
                 raw, view = idle.pop()
                 self._idle_bytes -= n_bytes
-            elif kind == "buffer":
+            elif is_buffer:
                 use = library.BufferUsage
                 usage = use.STORAGE | use.COPY_SRC | use.COPY_DST
                 raw, view = self.raw.create_buffer(size=size, usage=usage), None
+                self._hold(n_bytes)
             else:
                 use = library.TextureUsage
                 usage = use.TEXTURE_BINDING | use.STORAGE_BINDING | use.COPY_DST
                 raw = self.raw.create_texture(size=(TEXELS_A_ROW, size, 1), format=kind, usage=usage)
                 view = raw.create_view()
-        piece = Piece(raw, size if kind == "buffer" else size * TEXELS_A_ROW, view)
+                self._hold(n_bytes)
+        piece = Piece(raw, size if is_buffer else size * TEXELS_A_ROW, view)
         weakref.finalize(piece, self._given_back, kind, size, n_bytes, raw, view).atexit = False
         return piece
 
     def _given_back(self, kind: str, size: int, n_bytes: int, raw: Any, view: Any) -> None:
         with self._lock:
-            if self._idle_bytes + n_bytes > IDLE_BYTES:
+            if kind == "buffer that stays" or self._idle_bytes + n_bytes > IDLE_BYTES:
                 raw.destroy()
+                self._hold(-n_bytes)
                 return
             self._idle.setdefault((kind, size), []).append((raw, view))
             self._idle_bytes += n_bytes
+
+    def forget_idle(self) -> None:
+        """Give idle pieces back to the driver: what comes next is of other sizes."""
+        with self._lock:
+            for (kind, size), idle in self._idle.items():
+                for raw, _ in idle:
+                    raw.destroy()
+                    self._hold(-size if kind == "buffer" else -size * TEXELS_A_ROW * TEXEL_BYTES)
+            self._idle.clear()
+            self._idle_bytes = 0
 
     def write(self, piece: Piece, values: NDArray[Any]) -> None:
         """Fill the beginning of a buffer."""
@@ -477,6 +530,7 @@ class Commands:
         if len(wanted) > 1 and sum(sizes) > self._device.most_bytes:
             return [self.read(each)[0] for each in wanted]
         copy = self._device.raw.create_buffer(size=sum(sizes), usage=use.COPY_DST | use.MAP_READ)
+        self._device._hold(sum(sizes))
         start = 0
         for (piece, _), size in zip(wanted, sizes, strict=True):
             self._encoder.copy_buffer_to_buffer(piece.raw, 0, copy, start, size)
@@ -486,6 +540,7 @@ class Commands:
         raw = np.frombuffer(copy.read_mapped(), np.uint8)
         copy.unmap()
         copy.destroy()
+        self._device._hold(-sum(sizes))
         starts = np.cumsum([0, *sizes])
         return [raw[start : start + n_bytes] for start, (_, n_bytes) in zip(starts, wanted, strict=False)]
 

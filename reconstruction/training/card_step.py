@@ -28,7 +28,7 @@ from reconstruction.light.ray_table import LEAST_COSINE
 from reconstruction.light.ray_table import SHORTEST as SHORTEST_NORMAL
 from reconstruction.light.shading import DARKEST
 from reconstruction.metrics.image_metrics import C1, C2, WINDOW_PX, window_weights
-from reconstruction.splats.card_splats import GLASS_FEATURES, AdamStep, CardSplats, fits_card
+from reconstruction.splats.card_splats import GLASS_FEATURES, AdamStep, CardSplats, DrawnSplats, fits_card
 from reconstruction.splats.densification.strategy import BetweenChanges, Densification, Limits
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.views import View
@@ -145,10 +145,9 @@ class CardGradients:
         asked.
     """
 
-    drawing: Drawing
+    drawn: DrawnSplats
     degree: int
     totals: list[Piece]
-    of_parameters: list[Piece]
     weights: Piece
     n_pixels: int
     looked_at: tuple[Tensor, Tensor] | None = None
@@ -214,9 +213,10 @@ class CardStep:
         model, view = self._model, sample.view if move is None else moved_view(sample.view, move)
         splats, n_pixels = self.splats, sample.view.width_px * sample.view.height_px
         with self.device.errors_said():
-            drawing, features = splats.drawing(view, settings, degree)
-            commands, of_splats = self.device.commands(), self.device.buffer(4 * splats.n)
-            commands.clear(of_splats, 4 * splats.n)
+            drawn = splats.drawing(view, settings, degree)
+            drawing, features = drawn.drawing, drawn.features
+            commands, of_splats = self.device.commands(), self.device.buffer(4 * drawing.n)
+            commands.clear(of_splats, 4 * drawing.n)
             blended = [
                 drawing.blend(commands, window, features, splats.n_quads, of_splats) for window in drawing.windows
             ]
@@ -233,17 +233,15 @@ class CardStep:
                     light.march(commands, drawing, window, channels, picture.mirrored)
                 picture.light(commands, window, channels)
             picture.compare(commands)
-            totals = drawing.no_sums(commands, splats.parts)
+            totals = drawing.no_sums(commands, drawn.parts)
             for window, channels in zip(drawing.windows, blended, strict=True):
                 wanted = picture.back(commands, window, channels)
                 if light is not None:
                     light.march_back(commands, drawing, window, channels, picture.mirrored)
-                drawing.blend_back(commands, window, features, splats.n_quads, wanted, splats.parts, totals)
-            of_parameters = [
-                drawing.project_back(commands, part, piece) for part, piece in zip(splats.parts, totals, strict=True)
-            ]
-            slots = WORDS | SLOTS
-            splats.add_up(commands, view, degree, totals, of_parameters, picture.sums, slots, moves=move is not None)
+                drawing.blend_back(commands, window, features, splats.n_quads, wanted, drawn.parts, totals)
+            for part, piece in zip(drawn.parts, totals, strict=True):
+                drawing.project_back(commands, part, piece, in_place=True)
+            splats.add_up(commands, drawn, degree, totals, picture.sums, WORDS | SLOTS, moves=move is not None)
             of_light = () if light is None else light.asked(picture)
             raw_sums, *read = commands.read(picture.read_sums, *of_light, *picture.read_look)
             sums = _Sums.of(raw_sums)
@@ -255,7 +253,7 @@ class CardStep:
             raise NotFinite("a gradient is not a number")
         _give_back(model, gain, move, of_mirrored, sky, more, sums, n_pixels)
         looked_at = picture.look(read[-1]) if is_looked_at else None
-        return CardGradients(drawing, degree, totals, of_parameters, of_splats, n_pixels, looked_at), terms
+        return CardGradients(drawn, degree, totals, of_splats, n_pixels, looked_at), terms
 
     def _light(self, view: View, generator: torch.Generator | None) -> _MirroredLight | _MarchedLight | None:
         """What is mirrored in a view: to be marched on the card, or found out here."""
@@ -283,7 +281,7 @@ class CardStep:
         by_name = {group["name"]: group["lr"] for group in self._optimiser.param_groups}
         by_name["details"] = by_name["colours"] * rates.colour_details
         between = self._between.setdefault(id(strategy), strategy.between_changes(self._model.splats))
-        view = found.drawing.view
+        view = found.drawn.drawing.view
         screen = 0.0
         if observed:
             screen = view.width_px * view.height_px / (observed * found.n_pixels)
@@ -292,7 +290,7 @@ class CardStep:
             between = BetweenChanges(between.opacity_pull, between.size_pull)
         by = AdamStep(by_name, rates.glass_geometry, 1.0 / found.n_pixels, screen, limits, between, seed)
         with self.device.errors_said():
-            self.splats.learn(found.drawing, found.degree, found.totals, found.of_parameters, found.weights, by)
+            self.splats.learn(found.drawn, found.degree, found.totals, found.weights, by)
         self.n_since += 1
 
     def bring(self, *, moments: bool) -> None:

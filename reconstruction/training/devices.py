@@ -27,13 +27,23 @@ from planning.base.effects import Assessment, Decision, EffectSetting, decide
 from planning.base.errors import InputError, ReconstructionError
 from planning.base.messages import say
 from reconstruction.base.adam import Adam
-from reconstruction.gpu.device import adapters, open_device, why_no_gpu
+from reconstruction.gpu.device import adapters, open_device, rounded_up, why_no_gpu
 from reconstruction.metrics.image_metrics import psnr_db
-from reconstruction.splats.card_splats import OTHER_FEATURES, RATED, AdamStep, CardSplats, fits_card
+from reconstruction.splats.card_splats import (
+    BYTES_FOR_ALL,
+    OTHER_FEATURES,
+    RATED,
+    AdamStep,
+    CardSplats,
+    PictureSize,
+    fits_card,
+    needed_bytes,
+)
 from reconstruction.splats.densification.strategy import NO_CHANGES, Limits
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.rasteriser import rasterise
 from reconstruction.splats.rasterising.views import View
+from reconstruction.splats.rasterising.wgpu_backend import LANE_ROWS, PATCH_COLUMNS
 from reconstruction.splats.splats import Splats
 from reconstruction.training.config import ANTIALIASED, TrainConfig
 
@@ -48,10 +58,8 @@ MODULE = "reconstruction.training.devices"
 TRIAL_S = 120.0
 """For compiling the kernels and drawing two splats, at most."""
 
-BYTES_A_SPLAT = 2048
-"""Of a card's memory for each splat, about: 784 are learned or added up over steps, the others lists, features and
-gradients of a picture."""
-BYTES_FOR_ALL = 256 << 20
+SHOWN_BYTES = 640
+"""Of a card's memory for each splat of a model that is looked at: 35 texels, and lists of a picture."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,8 +190,27 @@ def _tried(config: TrainConfig, splats: Splats, view: View) -> CardTrial:
     apart = max(float((a - b).norm() / b.norm().clamp(min=1e-12)) for a, b in zip(found, expected, strict=True))
     if not apart < MOST_APART and config.device == "auto":
         return CardTrial(card.name, say("{} does not draw what the processor draws (apart: {:.2g})", card.name, apart))
-    needed = BYTES_FOR_ALL + BYTES_A_SPLAT * max(config.max_splats, len(splats))
+    needed = training_bytes(splats, window, settings, max(config.max_splats, len(splats)), card.is_software)
     return CardTrial(card.name, "", here_s, there_s, first_s, needed)
+
+
+@torch.no_grad()
+def training_bytes(splats: Splats, view: View, settings: RasterSettings, n: int, is_software: bool) -> int:
+    """Of a card's memory, at most, for steps with `n` splats of which a view shows as large a share as of these.
+
+    Pictures are as large as that of the view.
+    """
+    given = splats.means, splats.quats, splats.scales, splats.opacities, splats.means[:, :1]
+    means, quats, scales, opacities, features = (values.detach().cpu() for values in given)
+    radii_px = rasterise(means, quats, scales, opacities, features, view, settings=settings).radii_px
+    radii_px = radii_px[radii_px > 0].double()
+    # Boxes begin anywhere in a patch, so that on average they reach into one more each way than they are large.
+    sides = (view.width_px, PATCH_COLUMNS), (view.height_px, LANE_ROWS)
+    across, down = ((2.0 * radii_px / of_patch + 1.0).clamp(max=rounded_up(side, of_patch)) for side, of_patch in sides)
+    share = n / max(len(splats), 1)
+    n_patches = share * float((across * down).sum())
+    size = PictureSize(math.ceil(share * len(radii_px)), math.ceil(n_patches), view.width_px * view.height_px)
+    return needed_bytes(n, size, is_software=is_software)
 
 
 Draw = Callable[[bool], NDArray[np.float32]]
@@ -213,7 +240,7 @@ def _compared(draw: Draw, n_splats: int) -> CardTrial:
     # Not less: what is no number at all is not alike either.
     if not alike_db >= LEAST_DB:
         return CardTrial(card.name, say("{} does not draw what the processor draws ({:.0f} dB)", card.name, alike_db))
-    return CardTrial(card.name, "", here_s, there_s, first_s, BYTES_FOR_ALL + BYTES_A_SPLAT * n_splats)
+    return CardTrial(card.name, "", here_s, there_s, first_s, BYTES_FOR_ALL + SHOWN_BYTES * n_splats)
 
 
 def _timed(draw: Draw, on_card: bool) -> tuple[float, NDArray[np.float32]]:

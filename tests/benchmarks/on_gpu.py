@@ -16,16 +16,21 @@ from unittest import mock
 import numpy as np
 import torch
 
+from reconstruction.base.adam import Adam
 from reconstruction.gpu import device as devices
 from reconstruction.gpu.device import Adapter, adapters, open_device, why_no_gpu
 from reconstruction.light.reflective_panels import ModelName
 from reconstruction.metrics.image_metrics import psnr_db
+from reconstruction.splats.card_splats import OTHER_FEATURES, RATED, AdamStep, CardSplats
+from reconstruction.splats.densification.strategy import NO_CHANGES, Limits
 from reconstruction.splats.rasterising import wgpu_backend
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.rasteriser import rasterise
+from reconstruction.splats.rasterising.views import View
+from reconstruction.splats.splats import Splats
 from reconstruction.training.callbacks import Callbacks, TrainingSnapshot
 from reconstruction.training.config import ANTIALIASED, Device, TrainConfig
-from reconstruction.training.devices import LEAST_DB
+from reconstruction.training.devices import LEAST_DB, training_bytes
 from reconstruction.training.model.card_pictures import CardPictures
 from reconstruction.training.model.render import Rendered, render_view
 from reconstruction.training.model.saved import TrainedModel
@@ -62,6 +67,9 @@ fn main(@builtin(global_invocation_id) lane: vec3u) {
     found[lane.x] = f32(sums.x + sums.y + sums.z + sums.w);
 }
 """
+
+MANY, MANY_PX, MOST_BYTES = 10_000_000, (512, 384), 8e9
+"""Splats that a card of 8 GB is to learn, and a window of a photo."""
 
 DEVICES: dict[Device, str] = {"cpu": "processor", "gpu": "card"}
 
@@ -100,6 +108,8 @@ def measure(context: Context) -> Iterator[Row]:
         folder = rendered("planar", Path(place) / "planar", N_VIEWS, WIDTH_PX)
         yield from _of_trainings(folder, card, QUICK_STEPS if context.is_quick else STEPS)
         yield from _of_curves(folder, QUICK_STEPS if context.is_quick else CURVE_STEPS)
+    if not context.is_quick:
+        yield from _of_memory()
 
 
 def _of_rasterisers(scene: Scene, name: str) -> Iterator[Row]:
@@ -217,6 +227,45 @@ def _of_views(width: int, n: int, light: ModelName | None) -> Iterator[Row]:
     error = float(np.mean((pictures["card"] - pictures["processor"]).astype(float) ** 2))
     target = f"{LEAST_DB:g} dB at least", psnr_db(error) >= LEAST_DB
     yield Row(name, "a picture, card, against the processor's", round(psnr_db(error), 1), "dB", None, "", *target)
+
+
+def around_camera(n: int, size: tuple[int, int]) -> tuple[Splats, View]:
+    """Splats all around a camera that looks at a quarter of them."""
+    g, (width, height) = torch.Generator().manual_seed(0), size
+    # A quarter of a turn is as wide as the picture, and none of it is above or below.
+    focal_px, highest = width / 2, math.sqrt(0.5) * height / width
+    turns, far_m = 2.0 * math.pi * torch.rand(n, generator=g), 4.0 + 26.0 * torch.rand(n, generator=g)
+    high_m = far_m * highest * (2.0 * torch.rand(n, generator=g) - 1.0)
+    means = torch.stack([far_m * turns.sin(), high_m, far_m * turns.cos()], dim=1)
+    scales = torch.exp(0.4 * torch.randn(n, 2, generator=g)) * 0.02
+    quats, opacities = torch.randn(n, 4, generator=g), torch.rand(n, generator=g)
+    splats = Splats.of(means, quats, scales, opacities, torch.rand(n, 3, generator=g))
+    eye = torch.eye(4, dtype=torch.float64)
+    return splats, View(width, height, focal_px, focal_px, width / 2, height / 2, eye)
+
+
+def _of_memory() -> Iterator[Row]:
+    """What a step of very many splats takes of a card's memory, by a device that holds nothing else."""
+    splats, at = around_camera(MANY, MANY_PX)
+    needed = training_bytes(splats, at, ANTIALIASED, MANY, adapters()[0].is_software)
+    # Another key than that of the device in use, and the same limit.
+    device = open_device(most_bytes=devices.LARGEST_BINDING)
+    optimiser = Adam([{"name": name, "params": [getattr(splats, name)]} for name in splats.names], lr=0.0)
+    pull = torch.rand((at.height_px, at.width_px, 4 * OTHER_FEATURES + 4), generator=torch.Generator().manual_seed(0))
+    device.forget_peak()
+    card = CardSplats(device, splats, optimiser, with_glass=False)
+    held, started = device.held_bytes, time.perf_counter()
+    by = AdamStep(dict.fromkeys((*RATED, "details"), 0.0), 1.0, 1.0, 0.0, Limits(), NO_CHANGES, 0)
+    card.try_step(at, ANTIALIASED, pull.numpy(), by)
+    step_s = time.perf_counter() - started
+    n_drawn = card.drawing(at, ANTIALIASED, 3).drawing.n
+    name = f"{at.width_px} x {at.height_px}, {MANY} splats, {100.0 * n_drawn / MANY:.0f} % in view"
+    yield Row(name, "memory of splats with moments, of each", round(held / MANY), "bytes")
+    target = f"{MOST_BYTES / 1e9:g} GB at most", device.peak_bytes <= MOST_BYTES
+    yield Row(name, "a step, memory at most", round(device.peak_bytes / 1e9, 2), "GB", None, "", *target)
+    is_told = "as told at least", needed >= device.peak_bytes
+    yield Row(name, "a step, memory as it is told before", round(needed / 1e9, 2), "GB", None, "", *is_told)
+    yield Row(name, "a first step, card", round(step_s, 1), "s")
 
 
 @dataclass(frozen=True, slots=True)

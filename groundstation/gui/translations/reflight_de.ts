@@ -10336,10 +10336,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>es hat noch keine Position des Luftfahrzeugs</translation>
     </message>
     <message>
-        <source>it has no walls that could be measured: save the model itself as .ifc, .glb or .obj in the program that made it; areas to keep out of are geo-zones (&apos;site zones&apos;, or Add zones... in the Site tab)</source>
-        <translation>sie hat keine Wände, die sich messen ließen: Sichern Sie das Modell selbst als .ifc, .glb oder .obj in dem Programm, aus dem es kommt; Gebiete, die zu meiden sind, sind Geozonen (&apos;site zones&apos; oder Zonen hinzufügen... im Tab Standort)</translation>
-    </message>
-    <message>
         <source>it has not heard for seconds where the operator stands: the link to it is bad</source>
         <translation>es hat seit Sekunden nicht gehört, wo der Betreiber steht: die Verbindung zu ihm ist schlecht</translation>
     </message>
@@ -16110,6 +16106,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>it covers nothing; take it closer or drop it</source>
         <translation>es deckt nichts ab; näher heran oder weglassen</translation>
+    </message>
+    <message>
+        <source>it has no walls that could be measured: save the model itself as .ifc, .glb or .obj in the program that made it; areas to keep out of are geo-zones: add them to the site as zones</source>
+        <translation>sie hat keine Wände, die sich messen ließen: Sichern Sie das Modell selbst als .ifc, .glb oder .obj in dem Programm, aus dem es kommt; Gebiete, die zu meiden sind, sind Geozonen: Fügen Sie sie dem Standort als Zonen hinzu</translation>
     </message>
     <message>
         <source>it knows no mountpoint of this name; it has {0}</source>

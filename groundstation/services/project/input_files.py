@@ -79,7 +79,7 @@ ADVICE = {
     (FileKind.BUILDING, FileKind.SITE): say("it needs no import; 'plan' takes it as it is"),
     (FileKind.BUILDING, FileKind.PLACES): say(
         "it has no walls that could be measured: save the model itself as .ifc, .glb or .obj in the program that made "
-        "it; areas to keep out of are geo-zones ('site zones', or Add zones... in the Site tab)"
+        "it; areas to keep out of are geo-zones: add them to the site as zones"
     ),
     (FileKind.TSPLIB, FileKind.PLAN): say("'tradeoff route' takes plans"),
 }

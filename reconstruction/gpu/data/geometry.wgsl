@@ -1,11 +1,5 @@
 // From a splat's parameters to what is drawn of it, shared by the way there and the way back: see project.wgsl.
-struct Parameters {
-    mean: vec3f,
-    opacity: f32,
-    quat: vec4f,                // w, x, y, z, of any length
-    scales: vec3f,
-    offset: vec2f,
-}
+//: include parameters
 
 struct Jacobian {
     x: vec2f,                   // change of the column with u and v
@@ -39,14 +33,6 @@ struct Drawn {
     opacity: f32,
     share: f32,                 // of what is drawn that is the splat's own
     has_disc: bool,
-}
-
-fn parameters_of(i: u32) -> Parameters {
-    let a = textureLoad(parameters, texel(4u * i), 0);
-    let b = textureLoad(parameters, texel(4u * i + 1u), 0);
-    let c = textureLoad(parameters, texel(4u * i + 2u), 0);
-    let d = textureLoad(parameters, texel(4u * i + 3u), 0);
-    return Parameters(a.xyz, a.w, b, c.xyz, d.xy);
 }
 
 fn in_camera(v: vec3f) -> vec3f {

@@ -1,31 +1,26 @@
 // From what was added up for a splat to a step of Adam (Kingma and Ba, 2015) on all that is learned of it: one thread
 // each. What densification asks about it is added up on the way: how hard its place in the picture is pulled at, in how
 // many pictures it was drawn, its weight there, and its largest size. Sizes are kept within limits, and where there is
-// noise, splats that are nearly transparent move along their own axes.
+// noise, splats that are nearly transparent move along their own axes. Splats that are not seen have gradients of 0.
 //: include learned
+//: if HALF
+//: include moments
+//: end
 
 @group(0) @binding(0) var<uniform> learning: Learning;
 @group(0) @binding(1) var<storage, read_write> learned: array<vec4f>;
+//: if HALF
+@group(0) @binding(2) var<storage, read_write> first_moments: array<vec2u>;
+@group(0) @binding(3) var<storage, read_write> second_moments: array<vec2u>;
+//: else
 @group(0) @binding(2) var<storage, read_write> first_moments: array<vec4f>;
 @group(0) @binding(3) var<storage, read_write> second_moments: array<vec4f>;
-@group(0) @binding(4) var<storage, read> totals: array<vec4f>;
-@group(0) @binding(5) var<storage, read> gradients: array<vec4f>;
+//: end
+@group(0) @binding(4) var<storage, read> places: array<u32>;
+@group(0) @binding(5) var<storage, read> totals: array<vec4f>;
 @group(0) @binding(6) var<storage, read> radii: array<f32>;
 @group(0) @binding(7) var<storage, read> weights: array<f32>;
 @group(0) @binding(8) var<storage, read_write> seen: array<vec4f>;
-
-// What is learned after the step.
-fn adam(place: u32, old: vec4f, slope: vec4f, step: vec4f) -> vec4f {
-    let g = learning.other.z * slope;
-    let before = first_moments[place];
-    let first = before + learning.adam.x * (g - before);
-    let second = learning.adam.y * second_moments[place] + learning.adam.z * g * g;
-    first_moments[place] = first;
-    second_moments[place] = second;
-    let new_value = old - step * (first / (sqrt(second) * learning.adam.w + learning.other.x));
-    learned[place] = new_value;
-    return new_value;
-}
 
 fn hashed(v: vec3u) -> vec3u {
     // M. Jarzynski and M. Olano, "Hash functions for GPU rendering", JCGT 9 (2020): pcg3d.
@@ -38,6 +33,31 @@ fn hashed(v: vec3u) -> vec3u {
     h.y += h.z * h.x;
     h.z += h.x * h.y;
     return h;
+}
+
+// What is learned after the step.
+fn adam(place: u32, old: vec4f, slope: vec4f, step: vec4f) -> vec4f {
+    let g = learning.other.z * slope;
+//: if HALF
+    let before = first_value(from_words(first_moments[place]));
+    let before2 = second_value(from_words(second_moments[place]));
+//: else
+    let before = first_moments[place];
+    let before2 = second_moments[place];
+//: end
+    let first = before + learning.adam.x * (g - before);
+    let second = learning.adam.y * before2 + learning.adam.z * g * g;
+//: if HALF
+    let dither = hashed(vec3u(place, learning.part.w, 2u + learning.part.x)).xy;
+    first_moments[place] = in_words(first_code(first));
+    second_moments[place] = in_words(second_code(second, vec4u(dither, dither >> vec2u(16u))));
+//: else
+    first_moments[place] = first;
+    second_moments[place] = second;
+//: end
+    let new_value = old - step * (first / (sqrt(second) * learning.adam.w + learning.other.x));
+    learned[place] = new_value;
+    return new_value;
 }
 
 // Three normal numbers (Box and Muller, 1958).
@@ -88,13 +108,37 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     value += y.b.x * a1.xyz + y.b.y * vec3f(a1.w, b1.xy) + y.b.z * vec3f(b1.zw, c1.x) + y.b.w * c1.yzw;
     value += y.c.x * a2.xyz + y.c.y * vec3f(a2.w, b2.xy) + y.c.z * vec3f(b2.zw, c2.x) + y.c.w * c2.yzw;
     value += y.d.x * a3.xyz + y.d.y * vec3f(a3.w, b3.xy) + y.d.z * vec3f(b3.zw, c3.x) + y.d.w * c3.yzw;
-    let t0 = totals[8u * at];
-    let t1 = totals[8u * at + 1u];
+    let row = places[i];
+    let is_seen = places[i + 1u] != row;
+    let sums = 8u * (row - learning.rows.x);
+    var t0 = vec4f(0.0);
+    var t1 = vec4f(0.0);
+//: if GLASS
+    var t2 = vec4f(0.0);
+//: end
+    var g0 = vec4f(0.0);
+    var g1 = vec4f(0.0);
+    var g2 = vec4f(0.0);
+    var g3 = vec4f(0.0);
+    var radius = 0.0;
+    var weight = 0.0;
+    if (is_seen) {
+        t0 = totals[sums];
+        t1 = totals[sums + 1u];
+//: if GLASS
+        t2 = totals[sums + 2u];
+//: end
+        g0 = totals[sums + GRADIENTS];
+        g1 = totals[sums + GRADIENTS + 1u];
+        g2 = totals[sums + GRADIENTS + 2u];
+        g3 = totals[sums + GRADIENTS + 3u];
+        radius = radii[row];
+        weight = weights[row];
+    }
     var of_light = t0.xyz;
     var of_reflectivity = 0.0;
     var of_base = vec3f(0.0);
 //: if GLASS
-    let t2 = totals[8u * at + 2u];
     let of_normal = vec3f(t1.w, t2.xy);
     let share = sigmoid(sizes.w);
     let r = share * base.w;
@@ -106,10 +150,6 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     let of_normal = vec3f(t0.w, t1.xy);
 //: end
     let g = of_light * light_slope(value);
-    let g0 = gradients[4u * at];
-    let g1 = gradients[4u * at + 1u];
-    let g2 = gradients[4u * at + 2u];
-    let g3 = gradients[4u * at + 3u];
     // Harmonics depend on the direction, and the direction on the place.
     let pulls = Harmonics(
         vec4f(dot(a0.xyz, g), dot(vec3f(a0.w, b0.xy), g), dot(vec3f(b0.zw, c0.x), g), dot(c0.yzw, g)),
@@ -172,7 +212,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
         learned[at] = vec4f(moved.xyz + step + 2.0 * cross(v, cross(v, step) + w * step), moved.w);
     }
     let old = seen[at];
-    let more = vec4f(old.x + learning.other.w * length(g3.xy), old.y + select(0.0, 1.0, radii[i] > 0.0),
-        old.z + weights[i], max(old.w, radii[i] / learning.pulls.z));
+    let more = vec4f(old.x + learning.other.w * length(g3.xy), old.y + select(0.0, 1.0, radius > 0.0),
+        old.z + weight, max(old.w, radius / learning.pulls.z));
     seen[at] = select(old, more, learning.pulls.w > 0.0);
 }

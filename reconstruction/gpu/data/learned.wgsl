@@ -4,9 +4,11 @@
 //   2: logarithms of the scales, logit of the reflectivity
 //   3: logits of the base reflectance, 1 where a splat is glass
 //   4 to 15: harmonics, red, green and blue of each
+//: include parameters
 struct Learning {
     eye: vec4f,                 // of the camera in the model's frame, metres
     part: vec4u,                // of the splats: first, number; harmonics that are used; seed of the noise
+    rows: vec4u,                // of totals: which of the seen splats has the first
     shape_rates: vec4f,         // steps of means, rotations, sizes, opacities: rates over 1 - beta1^t
     colour_rates: vec4f,        // of the first harmonic, the others, reflectivity, base reflectance
     adam: vec4f,                // 1 - beta1, beta2, 1 - beta2, 1 / sqrt(1 - beta2^t)
@@ -20,6 +22,11 @@ const FIRST_HARMONICS = 4u;
 
 fn sigmoid(x: f32) -> f32 { return 1.0 / (1.0 + exp(-x)); }
 fn sigmoids(x: vec3f) -> vec3f { return 1.0 / (1.0 + exp(-x)); }
+
+fn learned_parameters(place: vec4f, quat: vec4f, sizes: vec4f) -> Parameters {
+    return Parameters(place.xyz, sigmoid(place.w), quat,
+        select(vec3f(exp(sizes.xy), 0.0), exp(sizes.xyz), SOLID == 1u), vec2f(0.0));
+}
 
 const DARKEST = 0.0031308;
 

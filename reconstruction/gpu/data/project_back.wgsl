@@ -1,13 +1,27 @@
 // From what was added up for a splat to the gradients of its parameters: one thread each. The formulas are those of
-// project.wgsl and geometry.wgsl, taken backwards line by line.
+// project.wgsl and geometry.wgsl, taken backwards line by line. With IN_PLACE gradients take the last quads of the sums
+// that they come from, else they have a buffer of their own.
 //: include view
 //: include geometry
+//: include given_parameters
 
 @group(0) @binding(0) var<uniform> view: View;
 @group(0) @binding(1) var parameters: texture_2d<f32>;
-@group(0) @binding(2) var<storage, read> totals: array<vec4f>;
-@group(0) @binding(3) var<storage, read> radii: array<f32>;
+@group(0) @binding(2) var<storage, read> radii: array<f32>;
+//: if IN_PLACE
+@group(0) @binding(3) var<storage, read_write> totals: array<vec4f>;
+
+fn put(at: u32, quad: u32, values: vec4f) {
+    totals[8u * at + GRADIENTS + quad] = values;
+}
+//: else
+@group(0) @binding(3) var<storage, read> totals: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> gradients: array<vec4f>;
+
+fn put(at: u32, quad: u32, values: vec4f) {
+    gradients[4u * at + quad] = values;
+}
+//: end
 
 fn in_world(v: vec3f) -> vec3f {
     return view.rows[0].xyz * v.x + view.rows[1].xyz * v.y + view.rows[2].xyz * v.z;
@@ -163,10 +177,12 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     let at = (group.x + group.y * groups.x) * 64u + lane;
     if (at >= view.part.y) { return; }
     let i = view.part.x + at;
+    if (radii[i] == 0.0) {
 //: for q in FOUR
-    gradients[4u * at + $qu] = vec4f(0.0);
+        put(at, $qu, vec4f(0.0));
 //: end
-    if (radii[i] == 0.0) { return; }
+        return;
+    }
     let given = parameters_of(i);
     let s = see(given);
     let d = drawn_from(s, given.opacity);
@@ -212,8 +228,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
         w * a.y - 2.0 * z * a.x + x * a.z - w * b.x - 2.0 * z * b.y + y * b.z + x * c.x + y * c.y);
     var of_quat = vec4f(0.0);
     if (s.length > 0.0) { of_quat = (of_unit - s.unit * dot(s.unit, of_unit)) / s.length; }
-    gradients[4u * at] = vec4f(of_mean, of_opacity);
-    gradients[4u * at + 1u] = of_quat;
-    gradients[4u * at + 2u] = vec4f(of_scales, 0.0);
-    gradients[4u * at + 3u] = vec4f(of_middle, 0.0, 0.0);
+    put(at, 0u, vec4f(of_mean, of_opacity));
+    put(at, 1u, of_quat);
+    put(at, 2u, vec4f(of_scales, 0.0));
+    put(at, 3u, vec4f(of_middle, 0.0, 0.0));
 }

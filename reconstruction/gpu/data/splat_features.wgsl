@@ -1,12 +1,14 @@
-// From what is learned of splats to what is drawn of them: one thread each. Written are the table of parameters that
-// project.wgsl reads, and that of features: light by harmonics, of glass (1 - R) c with R and R F0, and the normal.
+// From what is learned of splats to what is drawn of those that are seen: one thread each. Written are the table of
+// parameters that project.wgsl reads, and that of features: light by harmonics, of glass (1 - R) c with R and R F0, and
+// the normal.
 //: include texels
 //: include learned
 
 @group(0) @binding(0) var<uniform> learning: Learning;
 @group(0) @binding(1) var<storage, read> learned: array<vec4f>;
-@group(0) @binding(2) var parameters: texture_storage_2d<rgba32float, write>;
-@group(0) @binding(3) var features: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(2) var<storage, read> places: array<u32>;
+@group(0) @binding(3) var parameters: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(4) var features: texture_storage_2d<rgba32float, write>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u,
@@ -14,15 +16,16 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     let at = (group.x + group.y * groups.x) * 64u + lane;
     let n = learning.part.y;
     if (at >= n) { return; }
-    let i = learning.part.x + at;
+    let i = places[learning.part.x + at];
+    if (i == places[learning.part.x + at + 1u]) { return; }
     let place = learned[at];
     let quat = learned[n + at];
     let sizes = learned[2u * n + at];
-    textureStore(parameters, texel(4u * i), vec4f(place.xyz, sigmoid(place.w)));
-    textureStore(parameters, texel(4u * i + 1u), quat);
-    textureStore(parameters, texel(4u * i + 2u), select(vec4f(exp(sizes.xy), 0.0, 0.0), vec4f(exp(sizes.xyz), 0.0),
-        SOLID == 1u));
-    textureStore(parameters, texel(4u * i + 3u), vec4f(0.0));
+    let p = learned_parameters(place, quat, sizes);
+    textureStore(parameters, texel(4u * i), vec4f(p.mean, p.opacity));
+    textureStore(parameters, texel(4u * i + 1u), p.quat);
+    textureStore(parameters, texel(4u * i + 2u), vec4f(p.scales, 0.0));
+    textureStore(parameters, texel(4u * i + 3u), vec4f(p.offset, 0.0, 0.0));
     let to_splat = direction_to(place.xyz);
     let y = harmonics(to_splat.way, learning.part.z);
     var value = vec3f(0.5);

@@ -1,13 +1,14 @@
-// Over all splats: whether a gradient is no number, and what a small motion of the camera would change, which is the
-// opposite of all splats moving: the sum of -g, of -(r x g) for places r from the camera, and of what turns them.
+// Over all splats that are seen: whether a gradient is no number, and what a small motion of the camera would change,
+// which is the opposite of all splats moving: the sum of -g, of -(r x g) for places r from the camera, and of what
+// turns them.
 // Threads take every so many splats.
 //: include learned
 //: include fixed_sums
 
 @group(0) @binding(0) var<uniform> learning: Learning;
 @group(0) @binding(1) var<storage, read> learned: array<vec4f>;
-@group(0) @binding(2) var<storage, read> totals: array<vec4f>;
-@group(0) @binding(3) var<storage, read> gradients: array<vec4f>;
+@group(0) @binding(2) var<storage, read> places: array<u32>;
+@group(0) @binding(3) var<storage, read> totals: array<vec4f>;
 @group(0) @binding(4) var<storage, read_write> sums: array<atomic<u32>>;
 
 fn is_bad(v: vec4f) -> bool {
@@ -25,11 +26,14 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     var turn = vec3f(0.0);
     var bad = false;
     for (var at = first; at < n; at += stride) {
-        let g = gradients[4u * at];
-        let of_quat = gradients[4u * at + 1u];
-        bad = bad || is_bad(g) || is_bad(of_quat) || is_bad(gradients[4u * at + 2u]);
+        let place = places[learning.part.x + at];
+        if (place == places[learning.part.x + at + 1u]) { continue; }
+        let row = 8u * (place - learning.rows.x);
+        let g = totals[row + GRADIENTS];
+        let of_quat = totals[row + GRADIENTS + 1u];
+        bad = bad || is_bad(g) || is_bad(of_quat) || is_bad(totals[row + GRADIENTS + 2u]);
 //: for q in QUADS
-        bad = bad || is_bad(totals[8u * at + $qu]);
+        bad = bad || is_bad(totals[row + $qu]);
 //: end
 //: if MOVES
         let r = learned[at].xyz - learning.eye.xyz;

@@ -37,11 +37,16 @@ Parts = list[tuple[int, int]]
 MOST_QUADS = 5
 """Of channels that lanes keep at once: a row of sums has eight quads, three of which are of geometry."""
 ROW_QUADS = 8
+GRADIENT_QUADS_AT = 4
+"""Of a row of sums, where gradients of parameters take the place of what they come from."""
 GEOMETRY_QUADS = 6
 PARAMETER_QUADS = 4
 BIN_PX = 16
 PATCH_COLUMNS, LANE_ROWS = 8, 4
 """Pixels of a patch in a row, and below each other in a lane."""
+
+WINDOW_BYTES = 32
+"""Of the struct View, behind what it says of the picture."""
 
 KEY_BITS = 28
 """Of a depth's bits less those of the nearest: all from there to 2^32 times as far have one of their own."""
@@ -62,6 +67,8 @@ CONSTANTS: dict[str, Constant] = {
     "LARGEST_OUTLINE_PX": 1e4,
     "ROUNDING": 1e-5,
     "SLACK_PX": 1e-3,
+    "SLACK": 0.01,
+    "GRADIENTS": GRADIENT_QUADS_AT,
     "LIMITS_WIDENED": LIMITS_WIDENED,
     "MOST_CHANGE": MOST_CHANGE,
     "EDGE_ON_JACOBIAN": 1e6,
@@ -170,7 +177,7 @@ class Drawing:
         self.device, self.view, self.settings = device, view, settings
         self.n, self.parameters = n, parameters
         self.constants = constants_for(device, settings, solid)
-        self._uniform = _view_uniform(view, settings, self.n, solid)
+        self._uniform = view_uniform(view, settings, self.n, solid)
         self.windows: list[Window] = []
         commands = device.commands()
         self.geometry = device.table(GEOMETRY_QUADS * self.n)
@@ -329,14 +336,23 @@ class Drawing:
             commands.clear(piece, 16 * ROW_QUADS * count)
         return totals
 
-    def project_back(self, commands: Commands, part: tuple[int, int], totals: Piece) -> Piece:
-        """Gradients of a part's parameters, `PARAMETER_QUADS` each, from what was added up for them."""
-        of_part = self.device.buffer(16 * PARAMETER_QUADS * part[1])
+    def project_back(
+        self, commands: Commands, part: tuple[int, int], totals: Piece, *, in_place: bool = False
+    ) -> Piece:
+        """Gradients of a part's parameters, `PARAMETER_QUADS` each, from what was added up for them.
+
+        Parameters
+        ----------
+        in_place
+            They take the place of the last quads of the sums, and what comes back is `totals`: for `GRADIENT_QUADS_AT`
+            quads of channels at most.
+        """
+        own = [] if in_place else [self.device.buffer(16 * PARAMETER_QUADS * part[1])]
         commands.run(
-            "project_back", self.constants, groups_of(part[1]), self.uniform(part=part),
-            self.parameters, totals, self.radii, of_part,
+            "project_back", self.constants | {"IN_PLACE": int(in_place)}, groups_of(part[1]), self.uniform(part=part),
+            self.parameters, self.radii, totals, *own,
         )  # fmt: skip
-        return of_part
+        return totals if in_place else own[0]
 
     def blend_back(
         self,
@@ -371,6 +387,9 @@ class Drawing:
                 )  # fmt: skip
             else:
                 commands.run("blend_back", constants, n_groups, self.uniform(window.bins, part), *shared, piece)
+        if len(self.windows) > 1:
+            # What is held until then would be held for all windows at once.
+            commands.submit()
 
 
 def parts_of(n: int, most: int) -> Parts:
@@ -400,7 +419,7 @@ def _padded(values: Floats, width: int) -> Floats:
     return wide
 
 
-def _view_uniform(view: View, settings: RasterSettings, n: int, solid: bool) -> bytes:
+def view_uniform(view: View, settings: RasterSettings, n: int, solid: bool) -> bytes:
     """The struct View of view.wgsl, up to the window."""
     matrix = view.cam_from_world.numpy()
     rotation = matrix[:3, :3]
@@ -470,9 +489,8 @@ class _Rasterise(torch.autograd.Function):
         return (None, None, None, None, *(torch.from_numpy(np.ascontiguousarray(each)) for each in parts))
 
 
-def check_number(device: Device, n: int) -> None:
-    """Raise `DeviceFailed` where there are more splats than a card's tables hold."""
-    most = device.most_texels // GEOMETRY_QUADS
+def check_number(n: int, most: int) -> None:
+    """Raise `DeviceFailed` where there are more splats than a card's buffers or tables hold."""
     if n > most:
         raise DeviceFailed(
             say("{} splats are more than the {} that graphics cards are given; compute on the processor instead",
@@ -483,7 +501,7 @@ def check_number(device: Device, n: int) -> None:
 def _parameters(device: Device, means: Floats, quats: Floats, scales: Floats, opacities: Floats, offsets: Any) -> Piece:
     """Of splats, on the card."""
     n = len(means)
-    check_number(device, n)
+    check_number(n, device.most_texels // GEOMETRY_QUADS)
     values = np.zeros((n, 4 * PARAMETER_QUADS), np.float32)
     values[:, 0:3], values[:, 3], values[:, 4:8], values[:, 8 : 8 + scales.shape[1]] = means, opacities, quats, scales
     if len(offsets):

@@ -18,7 +18,7 @@ from reconstruction.gpu.device import TEXELS_A_ROW, Commands, Device, Piece, rou
 from reconstruction.gpu.sorting import groups_of
 from reconstruction.splats.rasterising.raster_types import RasterSettings
 from reconstruction.splats.rasterising.views import View
-from reconstruction.splats.rasterising.wgpu_backend import Bins, SplatsOnCard
+from reconstruction.splats.rasterising.wgpu_backend import Bins, SplatsOnCard, check_number
 from reconstruction.training.methods.shader import Shader
 from reconstruction.training.model.joint_model import MOST_LOST, SceneModel, panels_in_view
 from reconstruction.training.model.pane_mirrors import PaneMirrors, mirrors_of
@@ -58,6 +58,7 @@ class CardPictures:
         self._model, self._device = model, device
         with device.errors_said(), torch.no_grad():
             splats = model.splats
+            check_number(len(splats), device.most_texels // LOOK_QUADS)
             self._splats = SplatsOnCard(device, splats.means, splats.quats, splats.scales, splats.opacities)
             self._looks = device.table(LOOK_QUADS * self._splats.n)
             device.write_table(self._looks, _looks(model))

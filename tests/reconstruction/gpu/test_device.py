@@ -55,6 +55,32 @@ def test_buffers_and_tables_hold_what_is_written_and_go_back_to_the_pool(card: D
     assert card.buffer(3900).raw is raw
 
 
+def test_what_is_held_is_counted_and_idle_pieces_make_room_where_much_is(
+    card: Device, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gc.collect()
+    card.forget_idle()
+    before = card.held_bytes
+    card.forget_peak()
+    pieces = [card.buffer(1 << 20), card.table(1), card.buffer(1000, stays=True)]
+    taken = (1 << 20) + 8192 * 16 + 1000
+    assert card.held_bytes - before == taken
+    card.read((pieces[0], 4096))
+    assert (card.held_bytes - before, card.peak_bytes - before) == (taken, taken + 4096)
+    # What stays is none of the pool; the others are idle and held.
+    pieces.clear()
+    gc.collect()
+    assert card.held_bytes - before == taken - 1000
+    assert card.buffer(1 << 20).size == 1 << 20
+    assert card.held_bytes - before == taken - 1000
+    monkeypatch.setattr(devices, "ROOMY_BYTES", before + taken)
+    larger = card.buffer(1 << 21)
+    assert card.held_bytes - before == 1 << 21
+    del larger
+    card.forget_idle()
+    assert card.held_bytes == before
+
+
 def test_more_uniforms_than_the_arena_holds_are_handed_over_in_turn(card: Device) -> None:
     totals = card.buffer(8)
     pieces = [card.buffer(4) for _ in range(300)]

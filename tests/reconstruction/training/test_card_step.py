@@ -24,6 +24,7 @@ from reconstruction.light.glass_light import GlassLight
 from reconstruction.light.photo_set import PanelPlanes
 from reconstruction.light.radiance_grid import GridBox, RadianceGrid
 from reconstruction.metrics.image_metrics import WINDOW_PX
+from reconstruction.splats import card_splats
 from reconstruction.splats.card_splats import PLACES, AdamStep, CardSplats
 from reconstruction.splats.densification.mcmc import MarkovChain
 from reconstruction.splats.densification.strategy import (
@@ -379,17 +380,21 @@ def test_a_hundred_steps_of_adam_are_those_of_torch_but_for_rounding() -> None:
     limits = Limits(smallest_m=0.01, largest_m=1.0)
     device, n = card.device, len(model.splats)
     g, before = seeded(6), copy.deepcopy(theirs.splats.state_dict())
-    drawing, _ = card.drawing(view, ANTIALIASED, 3)
-    weights = device.buffer(4 * n)
+    drawn = card.drawing(view, ANTIALIASED, 3)
+    places = torch.from_numpy(device.read((drawn.places, 4 * (n + 1)))[0].view(np.int32))
+    is_seen = places.diff() > 0
+    assert 50 < drawn.drawing.n == int(is_seen.sum()) < n - 10
+    weights = device.buffer(4 * drawn.drawing.n)
     for step in range(100):
         set_rates(reference, rates, step, step / 100.0, 0.5)
         # Of splats that no pixel shows, half of all in each step, gradients are 0, and moments go on.
-        factor = (torch.rand(n, 1, generator=g) < 0.5) * 10.0 ** torch.randint(-8, 1, (n, 1), generator=g)
+        factor = (is_seen[:, None] & (torch.rand(n, 1, generator=g) < 0.5)) * 10.0 ** torch.randint(
+            -8, 1, (n, 1), generator=g
+        )
         given_features, given_parameters = (factor * torch.randn(n, k, generator=g) for k in (10, 16))
-        totals = torch.cat([given_features, torch.zeros(n, 22)], dim=1)
-        pieces = [device.buffer(4 * values.numel()) for values in (totals, given_parameters)]
-        for piece, values in zip(pieces, (totals, given_parameters), strict=True):
-            device.write(piece, values.numpy())
+        totals = torch.cat([given_features, torch.zeros(n, 6), given_parameters], dim=1)[is_seen]
+        piece = device.buffer(4 * totals.numel())
+        device.write(piece, totals.numpy())
         reference.zero_grad(set_to_none=True)
         features = theirs._features(view, 3)[:, :10]
         others = (theirs.splats.means, theirs.splats.opacities[:, None], theirs.splats.quats, theirs.splats.scales)
@@ -402,7 +407,7 @@ def test_a_hundred_steps_of_adam_are_those_of_torch_but_for_rounding() -> None:
         by_name = {group["name"]: group["lr"] for group in reference.param_groups}
         by_name["details"] = by_name["colours"] * rates.colour_details
         by = AdamStep(by_name, rates.glass_geometry, 1.0, 0.0, limits, NO_CHANGES, 0)
-        card.learn(drawing, 3, [pieces[0]], [pieces[1]], weights, by)
+        card.learn(drawn, 3, [piece], weights, by)
     card.bring(model.splats, optimiser)
     assert optimiser.state[model.splats.means]["step"] == 100.0
     for name in PLACES:
@@ -482,3 +487,47 @@ def test_densification_is_told_the_same_and_jitters_as_much_as_on_the_processor(
     raster = model(view, degree=3, settings=ANTIALIASED).raster
     assert torch.equal(seen["views"], (raster.radii_px > 0).float())
     assert len(seen["eyes_m"]) == 1
+
+
+@pytest.mark.long
+def test_moments_of_16_bits_learn_as_well_as_those_of_32(monkeypatch: pytest.MonkeyPatch) -> None:
+    view, n_steps = turned_view(60, 40, 50.0), 150
+    rates, most_whole = TrainConfig().rates, card_splats.MOST_WHOLE
+    lost_db, gained_db = [], []
+
+    def psnr_db(model: SceneModel, shown: Tensor) -> float:
+        with torch.no_grad():
+            error = model(view, degree=3, settings=ANTIALIASED).display - shown
+        return -10.0 * float(error.square().mean().log10())
+
+    for seed in range(3):
+        truth = made_model(view, n=400)
+        with torch.no_grad():
+            shown = truth(view, degree=3, settings=ANTIALIASED).display.clamp(0.0, 1.0)
+        sample = made_sample(view)
+        ones = torch.ones(shown.shape[:2], dtype=torch.bool)
+        sample = replace(sample, display=(255.0 * shown).round().to(torch.uint8), facade=ones, shown=ones)
+        found = []
+        for most in (most_whole, 0):
+            monkeypatch.setattr(card_splats, "MOST_WHOLE", most)
+            model, strategy = copy.deepcopy(truth), FixedNumber()
+            g = seeded(seed)
+            with torch.no_grad():
+                for name, spread in (("means", 0.05), ("log_scales", 0.5), ("sh", 0.5), ("opacity_logits", 1.0)):
+                    values = getattr(model.splats, name)
+                    values += spread * torch.randn(values.shape, generator=g)
+            optimiser, before_db = optimiser_of(model), psnr_db(model, shown)
+            card = CardStep(open_device(), model, optimiser)
+            assert card.splats.is_half == (most == 0)
+            for step in range(n_steps):
+                set_rates(optimiser, rates, step, step / n_steps, 1.0)
+                gradients, _ = card.gradients(
+                    sample, torch.ones(()), None, 3, ANTIALIASED, LossWeights(), step / n_steps, None
+                )
+                card.learn(gradients, rates, strategy, Limits(), step, observed=0.0, jitters=False)
+            card.bring(moments=True)
+            found.append(psnr_db(model, shown))
+        gained_db.append(found[0] - before_db)
+        lost_db.append(found[0] - found[1])
+    assert min(gained_db) > 2.0, gained_db
+    assert sum(lost_db) / 3 < 0.05, lost_db

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from dataclasses import replace
 
 import numpy as np
@@ -12,14 +13,22 @@ from numpy.typing import NDArray
 from planning.base.effects import decide
 from planning.base.errors import InputError
 from reconstruction.gpu.device import Adapter, DeviceFailed, open_device, why_no_gpu
+from reconstruction.splats import card_splats
 from reconstruction.splats.card_splats import CardSplats
 from reconstruction.splats.rasterising.wgpu_backend import Drawing
 from reconstruction.splats.splats import Splats
 from reconstruction.training import devices
-from reconstruction.training.config import TrainConfig
-from reconstruction.training.devices import CardTrial, SplatsByCard, check_device, drawn_by_card, shown_by_card
+from reconstruction.training.config import ANTIALIASED, TrainConfig
+from reconstruction.training.devices import (
+    CardTrial,
+    SplatsByCard,
+    check_device,
+    drawn_by_card,
+    shown_by_card,
+    training_bytes,
+)
 from reconstruction.training.train import train_model
-from tests.reconstruction.splats.drawn_splats import level_view, random_splats
+from tests.reconstruction.splats.drawn_splats import level_view, random_splats, seeded
 
 SMALL = TrainConfig(method="2dgs", iterations=8, n_splats=100, max_splats=100, score_every_s=1e9)
 CARD = Adapter("Intel UHD 620", "integrated", "Vulkan", "Mesa 24")
@@ -117,6 +126,34 @@ def test_a_card_shows_models_where_its_picture_is_the_processors_and_comes_soone
     found = shown_by_card(lambda _: np.ones((1, 1, 3), np.float32), 1000, "auto")
     assert not found.on
     assert "there is no graphics card but llvmpipe" in found.reason
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("most_whole", [card_splats.MOST_WHOLE, 0])
+def test_a_step_takes_the_memory_that_is_told_at_most(most_whole: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    needs_card()
+    monkeypatch.setattr(card_splats, "MOST_WHOLE", most_whole)
+    device, view = open_device(), level_view(96, 64, 90.0)
+    turns = 2.0 * torch.pi * torch.rand(60_000, generator=seeded(0))
+    made = [values.float()[torch.arange(60_000) % 600] for values in random_splats(600, view).tensors]
+    # A share of them only is before the camera.
+    far = made[0].norm(dim=1)
+    means = torch.stack([far * turns.sin(), made[0][:, 1], far * turns.cos()], dim=1)
+    splats = Splats.of(means, made[1], 0.1 * made[2], made[3], made[4][:, :3].sigmoid())
+    told = training_bytes(splats, view, ANTIALIASED, len(splats), device.adapter.is_software)
+    gc.collect()
+    device.forget_idle()
+    before = device.held_bytes
+    device.forget_peak()
+    devices.learning_s(splats, view, ANTIALIASED, True)
+    taken = device.peak_bytes - before
+    learned = len(splats) * (784 if most_whole else 528)
+    assert learned < taken < told
+    # Beside what lies there for all, it is told well enough to choose a card by.
+    assert told - card_splats.BYTES_FOR_ALL < 2.0 * taken
+    # More splats take more by what is learned of each, and by what a picture needs of those in it.
+    twice = training_bytes(splats, view, ANTIALIASED, 2 * len(splats), device.adapter.is_software)
+    assert learned < twice - told < 2 * taken
 
 
 @pytest.mark.long

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 
-from reconstruction.gpu.device import open_device, uniform, why_no_gpu
+from reconstruction.gpu.device import DeviceFailed, open_device, uniform, why_no_gpu
 from reconstruction.light.reflection_mlp import MlpShape, ReflectionMlp
 from reconstruction.metrics.image_metrics import psnr_db
 from reconstruction.splats.rasterising.raster_types import RasterSettings
@@ -134,3 +134,10 @@ def test_networks_give_their_light_at_any_order(card, shape):
 def test_networks_that_shared_memory_has_no_room_for_are_left_to_the_processor():
     network = ReflectionMlp(MlpShape(width=514, layers=2), 0.3, torch.Generator().manual_seed(0))
     assert packed_network(network) is None
+
+
+def test_more_splats_than_a_table_holds_are_left_to_the_processor(card, monkeypatch):
+    model = made(grid_of)
+    monkeypatch.setattr(type(card), "most_texels", card_pictures.LOOK_QUADS * (len(model.splats) - 1))
+    with pytest.raises(DeviceFailed, match=r"splats are more than the \d+ that graphics cards are given"):
+        CardPictures(model, card)
