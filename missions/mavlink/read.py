@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -79,6 +79,14 @@ NOT_FLOWN = {
     mavlink.MAV_CMD_DO_JUMP: say("jumps are not followed: each item counts once"),
 }
 
+CHANGES_NOTHING = (
+    mavlink.MAV_CMD_DO_GIMBAL_MANAGER_CONFIGURE,
+    mavlink.MAV_CMD_DO_MOUNT_CONFIGURE,
+    mavlink.MAV_CMD_DO_LAND_START,
+    mavlink.MAV_CMD_JUMP_TAG,
+)
+"""Of what a plan holds: who moves the gimbal, and marks in the list."""
+
 
 @dataclass(slots=True)
 class _Trigger:
@@ -125,6 +133,8 @@ class MavlinkFlight:
         self.flown = [_with_passing(point) for point in self.flown]
 
     def _go_through(self) -> None:
+        left_out: dict[int, list[int]] = {}
+        number = 0
         for number, item in enumerate(self.file.items, 1):
             self._note_simplification(item, number)
             if item.command in FLOWN_TO:
@@ -133,12 +143,30 @@ class MavlinkFlight:
                 self._take_off(item, number)
             elif item.command in LANDINGS:
                 self._land(item, number)
-                return
+                break
             elif item.command == mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH:
                 self.finish = Finish.RETURN
-                return
+                break
             elif item.command in _HANDLERS:
                 _HANDLERS[item.command](self, item, number)
+            elif item.command not in NOT_FLOWN and item.command not in CHANGES_NOTHING:
+                left_out.setdefault(item.command, []).append(number)
+        self._note_left_out(left_out, number)
+
+    def _note_left_out(self, left_out: Mapping[int, Sequence[int]], n_read: int) -> None:
+        """Say what of the mission the plan does not hold: items by command, and those behind the `n_read` first."""
+        for command, numbers in left_out.items():
+            entry = mavlink.enums["MAV_CMD"].get(command)
+            name = str(command) if entry is None else f"{command}, {entry.name.removeprefix('MAV_CMD_')}"
+            text = say(
+                "a plan cannot hold this command ({}; {} times): it is left out, and missions made of the plan do "
+                "without it",
+                *(name, len(numbers)),
+            )
+            self.findings.append(Finding(Severity.WARNING, "left-out", text, say("{}item {}", self.place, numbers[0])))
+        if n_read < len(self.file.items):
+            text = say("the flight ends with this item; the {} behind it are left out", len(self.file.items) - n_read)
+            self.findings.append(Finding(Severity.WARNING, "left-out", text, say("{}item {}", self.place, n_read)))
 
     def _stay(self, item: MissionItem) -> Stay:
         """How long the vehicle stays at a waypoint; without a hold it flies through, within its acceptance radius."""

@@ -8398,6 +8398,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein Weg braucht zwei oder mehr Ansichten; --frames weglassen</translation>
     </message>
     <message>
+        <source>a plan cannot hold this command ({0}; {1} times): it is left out, and missions made of the plan do without it</source>
+        <translation>ein Plan kann diesen Befehl nicht halten ({0}; {1}-mal): Er fehlt, und Missionen aus dem Plan kommen ohne ihn</translation>
+    </message>
+    <message>
         <source>a plan is being made</source>
         <translation>ein Plan entsteht</translation>
     </message>
@@ -12442,6 +12446,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the file says where this is, but not what it means; until you say, it counts as prohibited</source>
         <translation>die Datei sagt, wo das ist, aber nicht, was es bedeutet; bis Sie es sagen, gilt es als verboten</translation>
+    </message>
+    <message>
+        <source>the flight ends with this item; the {0} behind it are left out</source>
+        <translation>mit diesem Eintrag endet der Flug; die {0} dahinter fehlen</translation>
     </message>
     <message>
         <source>the flight geography reaches {0} m above ground; above {1} m other rules hold</source>

@@ -143,7 +143,8 @@ SUBJECTS = {
             say("Mission file"),
             "action autopilot-items item waypoint fly-to-wayline fly-waypoints file-name finish garbled "
             "nan not-checked stale-distance no-mission no-template option-left-out other-app parts-disagree route "
-            "simplified stated-time dropped-do after-the-end unknown-command unsupported version aircraft",
+            "simplified stated-time dropped-do after-the-end left-out unknown-command unsupported version "
+            "aircraft",
         ),
         (say("Project"), "loose-files old-format plan-changed plan-left-out read-only site-changed"),
         (say("Flight record"), "ends-in-air motors-off no-flight time-went-back log raw"),

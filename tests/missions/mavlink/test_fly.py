@@ -199,6 +199,17 @@ def test_what_is_simplified_is_said() -> None:
     assert [f.place.rpartition(" ")[2] for f in mission.findings if f.code == "simplified"] == ["2", "3", "4", "5"]
 
 
+def test_what_a_plan_cannot_hold_is_said_once_for_each_command() -> None:
+    gripper, unheard_of, gimbal = plain(211, 1, 1), plain(31999, 1), plain(1001)
+    mission = read(TAKEOFF, FIRST, gripper, unheard_of, gripper, gimbal, plain(20), plain(178, 1), FIRST)
+    told = [(f.place.rpartition(" ")[2], str(f.message)) for f in mission.findings if f.code == "left-out"]
+    assert [place for place, _ in told] == ["3", "4", "7"]
+    assert "(211, DO_GRIPPER; 2 times)" in told[0][1]
+    assert "(31999; 1 times)" in told[1][1]
+    assert "the 2 behind it are left out" in told[2][1]
+    assert "left-out" not in {f.code for f in read(TAKEOFF, FIRST, SHOOT, gimbal, plain(20)).findings}
+
+
 def test_photo_before_the_first_waypoint_is_left_out_and_said() -> None:
     mission = read(SHOOT, FIRST, home=None)
     assert mission.n_photos == 0
