@@ -228,8 +228,8 @@ TERMS = (
     Term(
         say("Ground risk class (iGRC)"),
         say(
-            "SORA: 1 to 10, by Table 1 of AMC1 Article 11: its row says who is below, its column holds the dimension "
-            "and the full speed of the aircraft. M1 and M2 (Table 5) lower it to the final class."
+            "SORA: 1 to 10, by Table 1 of AMC1 Article 11, from who is below, and the aircraft's dimension and full "
+            "speed. M1 and M2 (Table 5) lower it to the final class."
         ),
         "guide/mission.md#ground-risk",
         (say("People below"), say("Largest dimension"), say("Full speed")),

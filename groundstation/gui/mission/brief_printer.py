@@ -120,7 +120,9 @@ WORDS = (
     QT_TRANSLATE_NOOP(
         "Brief", "contingency volume {0} to each side, up to {1} above ground; ground-risk buffer {2} beyond"
     ),
-    QT_TRANSLATE_NOOP("Brief", "{0}; class {1}"),
+    QT_TRANSLATE_NOOP("Brief", "{0}: {1} [{2}]"),
+    QT_TRANSLATE_NOOP("Brief", "Intrinsic ground risk class"),
+    QT_TRANSLATE_NOOP("Brief", "Final ground risk class"),
     QT_TRANSLATE_NOOP("Brief", "not stated how many: keep everybody out"),
     QT_TRANSLATE_NOOP("Brief", "none: controlled ground area"),
     QT_TRANSLATE_NOOP("Brief", "an assembly of people"),

@@ -305,8 +305,16 @@
         <translation>Notfallvolumen {0} zu jeder Seite, bis {1} über Grund; Bodenrisikopuffer {2} darüber hinaus</translation>
     </message>
     <message>
-        <source>{0}; class {1}</source>
-        <translation>{0}; Klasse {1}</translation>
+        <source>{0}: {1} [{2}]</source>
+        <translation>{0}: {1} [{2}]</translation>
+    </message>
+    <message>
+        <source>Intrinsic ground risk class</source>
+        <translation>Bodenrisikoklasse vor Minderungen (iGRC)</translation>
+    </message>
+    <message>
+        <source>Final ground risk class</source>
+        <translation>Endgültige Bodenrisikoklasse</translation>
     </message>
     <message>
         <source>not stated how many: keep everybody out</source>
@@ -8178,10 +8186,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>Einsatz fortsetzen</translation>
     </message>
     <message>
-        <source>SORA: 1 to 10, by Table 1 of AMC1 Article 11: its row says who is below, its column holds the dimension and the full speed of the aircraft. M1 and M2 (Table 5) lower it to the final class.</source>
-        <translation>SORA: 1 bis 10 nach Tabelle 1 von AMC1 Artikel 11: Die Zeile sagt, wer darunter ist, die Spalte fasst Abmessung und Höchstgeschwindigkeit des Fluggeräts. M1 und M2 (Tabelle 5) senken sie zur endgültigen Klasse.</translation>
-    </message>
-    <message>
         <source>Show the first</source>
         <translation>Den ersten zeigen</translation>
     </message>
@@ -15658,6 +15662,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>Route</source>
         <translation>Route</translation>
+    </message>
+    <message>
+        <source>SORA: 1 to 10, by Table 1 of AMC1 Article 11, from who is below, and the aircraft&apos;s dimension and full speed. M1 and M2 (Table 5) lower it to the final class.</source>
+        <translation>SORA: 1 bis 10 nach Tabelle 1 von AMC1 Artikel 11, aus den Menschen darunter, Abmessung und Höchstgeschwindigkeit des Fluggeräts. M1 und M2 (Tabelle 5) senken sie zur endgültigen Klasse.</translation>
     </message>
     <message>
         <source>SORA: the ground beyond the contingency volume that the aircraft may hit when it falls out of that.</source>
