@@ -227,8 +227,8 @@ class SharedView(QWidget):
     def make_scene(self) -> None:
         """Make the 3-D view, in three turns; its module is best imported before, on another thread.
 
-        With the first OpenGL widget of a window Qt paints all of it anew, by OpenGL; what VTK compiles for its first
-        frame takes as long again. In one turn it would be a quarter of a second.
+        With the first OpenGL widget of a window, as a graphics card has one, Qt paints all of it anew; what VTK
+        compiles for its first frame takes as long again. In one turn it would be a quarter of a second.
         """
         if self._scene is not None or self._making is not None:
             return

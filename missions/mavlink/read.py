@@ -159,13 +159,14 @@ class MavlinkFlight:
             entry = mavlink.enums["MAV_CMD"].get(command)
             name = str(command) if entry is None else f"{command}, {entry.name.removeprefix('MAV_CMD_')}"
             text = say(
-                "a plan cannot hold this command ({}; {} times): it is left out, and missions made of the plan do "
+                "a plan cannot hold this command ({}; items: {}): it is left out, and missions made of the plan do "
                 "without it",
                 *(name, len(numbers)),
             )
             self.findings.append(Finding(Severity.WARNING, "left-out", text, say("{}item {}", self.place, numbers[0])))
-        if n_read < len(self.file.items):
-            text = say("the flight ends with this item; the {} behind it are left out", len(self.file.items) - n_read)
+        n_behind = len(self.file.items) - n_read
+        if n_behind:
+            text = say("the flight ends with this item; what stands behind it is left out, items: {}", n_behind)
             self.findings.append(Finding(Severity.WARNING, "left-out", text, say("{}item {}", self.place, n_read)))
 
     def _stay(self, item: MissionItem) -> Stay:

@@ -394,8 +394,9 @@ class TrainingState:
             self.model.load(state["model"], state["empty places"])
             self.exposures.load_state_dict(state["exposures"])
             self.poses.load_state_dict(state["poses"])
-            # Of states before looks had a date all are old, and told nothing by.
-            self.transients.load_state_dict(state["transients"], strict=False)
+            # Where looks have no date yet, all are old: nothing is told by them.
+            undated = {"seen_at": torch.zeros_like(self.transients.seen_at)}
+            self.transients.load_state_dict(undated | state["transients"])
             self.optimiser = adam_of(self.model, self.exposures, self.poses, self.config, self._extent_m)
             self.optimiser.load_state_dict(state["adam"])
             self.photos.load_state_dict(state["photos"])

@@ -386,7 +386,7 @@ class CameraPreview(QWidget):
         return image_array(self.grab().toImage())
 
     def canvas(self) -> Canvas:
-        """The OpenGL widget, for what measures it."""
+        """What it is drawn on, for what measures it."""
         return self._frame.canvas
 
     def close_view(self) -> None:

@@ -8402,10 +8402,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein Weg braucht zwei oder mehr Ansichten; --frames weglassen</translation>
     </message>
     <message>
-        <source>a plan cannot hold this command ({0}; {1} times): it is left out, and missions made of the plan do without it</source>
-        <translation>ein Plan kann diesen Befehl nicht halten ({0}; {1}-mal): Er fehlt, und Missionen aus dem Plan kommen ohne ihn</translation>
-    </message>
-    <message>
         <source>a plan is being made</source>
         <translation>ein Plan entsteht</translation>
     </message>
@@ -12452,10 +12448,6 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>die Datei sagt, wo das ist, aber nicht, was es bedeutet; bis Sie es sagen, gilt es als verboten</translation>
     </message>
     <message>
-        <source>the flight ends with this item; the {0} behind it are left out</source>
-        <translation>mit diesem Eintrag endet der Flug; die {0} dahinter fehlen</translation>
-    </message>
-    <message>
         <source>the flight geography reaches {0} m above ground; above {1} m other rules hold</source>
         <translation>die Fluggeographie reicht {0} m über Grund; über {1} m gelten andere Regeln</translation>
     </message>
@@ -15916,6 +15908,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
         <translation>ein Teil des Bildes ist beschädigt; kopieren Sie die Datei noch einmal und prüfen Sie die Karte</translation>
     </message>
     <message>
+        <source>a plan cannot hold this command ({0}; items: {1}): it is left out, and missions made of the plan do without it</source>
+        <translation>ein Plan kann diesen Befehl nicht halten ({0}; Einträge: {1}): Er fehlt, und Missionen aus dem Plan kommen ohne ihn</translation>
+    </message>
+    <message>
         <source>a session description</source>
         <translation>eine Sitzungsbeschreibung</translation>
     </message>
@@ -16210,6 +16206,10 @@ Einsatz {0} ist der nächste: einen vollen Akku einsetzen, dann Enter drücken</
     <message>
         <source>the files do not say how good their heights are: {0} m more are kept above the ground, as for {1}; another value can be given with --accuracy</source>
         <translation>die Dateien sagen nicht, wie genau ihre Höhen sind: {0} m mehr werden über dem Boden eingehalten, wie bei {1}; ein anderer Wert lässt sich mit --accuracy angeben</translation>
+    </message>
+    <message>
+        <source>the flight ends with this item; what stands behind it is left out, items: {0}</source>
+        <translation>mit diesem Eintrag endet der Flug; was dahinter steht, fehlt, Einträge: {0}</translation>
     </message>
     <message>
         <source>the foot of the building lies {0} m off the terrain, which is good to {1} m; {2}</source>

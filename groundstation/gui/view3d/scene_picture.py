@@ -610,7 +610,7 @@ class ScenePicture(QWidget):
         self._canvas.close()
 
     def canvas(self) -> Canvas:
-        """The OpenGL widget, for what measures it."""
+        """What it is drawn on, for what measures it."""
         return self._canvas
 
     def pick_at(self, x_px: float, y_px: float, see_through: frozenset[Layer] = frozenset()) -> Hit | None:

@@ -204,9 +204,9 @@ def test_what_a_plan_cannot_hold_is_said_once_for_each_command() -> None:
     mission = read(TAKEOFF, FIRST, gripper, unheard_of, gripper, gimbal, plain(20), plain(178, 1), FIRST)
     told = [(f.place.rpartition(" ")[2], str(f.message)) for f in mission.findings if f.code == "left-out"]
     assert [place for place, _ in told] == ["3", "4", "7"]
-    assert "(211, DO_GRIPPER; 2 times)" in told[0][1]
-    assert "(31999; 1 times)" in told[1][1]
-    assert "the 2 behind it are left out" in told[2][1]
+    assert "(211, DO_GRIPPER; items: 2)" in told[0][1]
+    assert "(31999; items: 1)" in told[1][1]
+    assert "behind it is left out, items: 2" in told[2][1]
     assert "left-out" not in {f.code for f in read(TAKEOFF, FIRST, SHOOT, gimbal, plain(20)).findings}
 
 
