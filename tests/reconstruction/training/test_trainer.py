@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from planning.base.errors import OperationCancelled, ReconstructionError
+from planning.base.errors import InputError, OperationCancelled, ReconstructionError
 from planning.base.progress import Trace
 from reconstruction.light.config import GridSettings, ReflectionConfig
 from reconstruction.light.photo_set import read_photo_set
@@ -275,6 +275,22 @@ def test_a_training_that_gives_no_numbers_ends_and_leaves_the_last_good_checkpoi
     again.restore(read_checkpoint(tmp_path / "c")["training"])
     assert again.at.step == 1
     again.run(Callbacks())
+
+
+def test_a_checkpoint_from_before_looks_had_a_date_goes_on_and_one_that_lacks_more_is_refused(make, tmp_path):
+    trainer = make(checkpoint="c")
+    trainer.step()
+    trainer.save()
+    state = read_checkpoint(tmp_path / "c")["training"]
+    assert "seen_at" in state["transients"]
+    undated = {name: value for name, value in state["transients"].items() if name != "seen_at"}
+    again = make(checkpoint="c")
+    again.restore(state | {"transients": undated})
+    assert again.at.step == 1
+    again.run(Callbacks())
+    without = {name: value for name, value in undated.items() if name != "errors"}
+    with pytest.raises(InputError):
+        make().restore(state | {"transients": without})
 
 
 def test_spoiled_splats_are_taken_from_the_last_checkpoint(make):
